@@ -1,4 +1,4 @@
-"""Configuration of the site that doc/build makes; pages are those of this folder, and README."""
+"""Configuration of the site that doc/build makes; its pages are in this folder, and README."""
 
 import re
 from pathlib import Path
@@ -41,13 +41,13 @@ nitpicky = True
 
 # --- pages ----------------------------------------------------------------------------------------
 def first_page(text):
-    """The README, in front of what index.md holds."""
+    """The README, in front of the text of index.md."""
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     return (readme + text).replace("](doc/", "](").replace("](examples/README)", "](examples.md)")
 
 
 def examples_page():
-    """What the README of each example says, as it stands; its first line is its title."""
+    """The unchanged README of each example; its first line is its title."""
     parts = ["# Examples"]
     for pattern in ("README", "*/README", "hard/*/README"):
         for readme in sorted((ROOT / "examples").glob(pattern)):
@@ -69,7 +69,7 @@ def read_page(app, docname, source):
 
 
 def lammps_page(app, env, node, content):
-    """Where our page links to other pages of LAMMPS' manual."""
+    """Links of our page to other pages of LAMMPS' manual."""
     if node.get("refdoc") != "src/fix_gear_quat" or node.get("reftype") != "doc":
         return None
     page = node["reftarget"].removeprefix("/src/")

@@ -14,10 +14,10 @@ of a study are its own, are used in its modules only, and keep their names.  The
 
     lab.sweep(name, deck, axes, read, settings)   every combination of values of variables -> read(finished)
     lab.many({name: Job(deck, variables, steps)}) side by side, --jobs at once -> {name: Finished}
-    lab.many(jobs, keep=True)                     the same, without those that are there (kept.py)
+    lab.many(jobs, keep=True)                     the same, without jobs that are kept already (kept.py)
     lab.in_turn(jobs, rounds)                     one at a time, for timing -> {name: [Finished, ...]}
-    lab.share(0.3)                                a context: its work is that part of the progress bar
-    lab.quick, lab.full, lab.parts                what was asked for
+    lab.share(0.3)                                a context: its work fills that part of the progress bar
+    lab.quick, lab.full, lab.parts                the requested options
 
 Where starting LAMMPS would take longer than the run, session.py keeps it in a process, times the ``run``
 command alone, and repeats competitors in turn until their medians are steady.
@@ -27,7 +27,7 @@ the template.  It runs nothing, so that tests can feed it data that must be refu
 its Measurement; ``--check`` compares with it, pages do not show it.  Pictures are tuples of Panels
 (panels.py), or functions that draw into a path.  Statistics are in statistics.py.
 
-Templates extend ``page.md.j2`` and fill its block ``body`` with sentences and what page.py defines:
+Templates extend ``page.md.j2`` and fill its block ``body`` with sentences and with the definitions of page.py:
 
     {{ table("name") }}  {{ measured(measurements) }}  {{ picture("name", "Caption.") }}
     {{ x | to(".1e") }}  {{ n | grouped }}

@@ -31,7 +31,7 @@ def all_studies():
 
 @dataclass(frozen=True)
 class Origin:
-    """Where data come from: a sentence for the page, and whether they are the ``whole`` study."""
+    """The origin of data: a sentence for the page, and ``whole``, True if they are the complete study."""
 
     sentence: str
     whole: bool
@@ -56,7 +56,7 @@ def ticking(tick):
 
 
 def measure(study, out, **options):
-    """Measure and keep data and their origin in ``out``; ``options`` are those of Lab."""
+    """Measure and keep data and their origin in ``out``; ``options`` are passed to Lab."""
     out.mkdir(parents=True, exist_ok=True)
     at = provenance.commit("src", "benchmarks", "examples")
     with tqdm(total=1.0, bar_format=BAR, desc=study.key, disable=None) as bar, ticking(bar.refresh):
@@ -76,7 +76,7 @@ def results(study, out):
 
 
 def write(study, out, finding, origin):
-    """Leave tables, pictures and the page in ``out``."""
+    """Write tables, pictures and the page to ``out``."""
     rows = [(m.what, m.value, m.error, m.unit, m.remark) for m in finding.measurements]
     header = ("measurement", "value", "standard error", "unit", "remark")
     write_csv(out / "measurements.csv", header, rows)
@@ -93,7 +93,7 @@ def write(study, out, finding, origin):
 
 
 def conduct(study, out, render_only=False, publish_it=False, **options):
-    """Do all of it; returns the Finding."""
+    """Do all these steps; returns the Finding."""
     out = Path(out).resolve()
     if publish_it:
         if options.get("quick") or options.get("parts"):

@@ -1,4 +1,4 @@
-"""Where the input decks of the scenes are."""
+"""Paths of the input decks of the scenes."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Runs that need not be made again: what they left is there, and their input is the same.
+"""Runs that need not be repeated: their output exists, and their input is unchanged.
 
 The input of a run is its deck with the other files of the deck's folder and of ``examples/common``, its
 variables, the files that these name, the LAMMPS program and the plugin if the run uses it.
@@ -40,7 +40,7 @@ class Kept:
         self._input = fingerprint(job, lmp)
 
     def error(self):
-        """LAMMPS' error in the run that is kept, "" for none; None if no such run is kept."""
+        """LAMMPS' error in the kept run, "" for none; None if no such run is kept."""
         if not self._record.is_file() or not self._log.is_file():
             return None
         record = json.loads(self._record.read_text(encoding="utf-8"))
@@ -48,7 +48,7 @@ class Kept:
         return record["error"] if there and record["input"] == self._input else None
 
     def forget(self):
-        """Before a run: what is left of another one does not count."""
+        """Before a run: discard the record of an earlier one."""
         self._record.unlink(missing_ok=True)
 
     def write(self, error):

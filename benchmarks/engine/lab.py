@@ -1,4 +1,4 @@
-"""The laboratory of a study: it runs decks side by side or in turn, and keeps what they leave."""
+"""The laboratory of a study: it runs decks side by side or in turn, and keeps their output."""
 
 import itertools
 import threading
@@ -51,7 +51,7 @@ class Finished:
 
 
 def _is_result(error, may_fail):
-    """Whether a run with this error, "" for none, counts; None: there is no run.  See Lab.many."""
+    """True if a run with this error, "" for none, counts; None: there is no run.  See Lab.many."""
     if not error:
         return error is not None
     return may_fail(error) if callable(may_fail) else may_fail
@@ -79,7 +79,7 @@ class Lab:
         return find_lmp(self._lmp)
 
     def prefer(self, lmp):
-        """Run this LAMMPS program, if it is there, unless another one was asked for."""
+        """Run this LAMMPS program, if it exists, unless another one was requested."""
         if self._lmp is None and Path(lmp).is_file():
             self._lmp = str(lmp)
 
@@ -96,7 +96,7 @@ class Lab:
         self._weight, self._left = weight, left - part
 
     def advance(self, part):
-        """Tell that ``part`` of the work of the current share is done, or what is left if that is less."""
+        """Report that ``part`` of the work of the current share is done, or the remaining part if it is smaller."""
         with self._lock:
             part = min(part, self._left)
             self._left -= part
@@ -131,7 +131,7 @@ class Lab:
         return {name: futures[name].result() for name in jobs}
 
     def in_turn(self, jobs, rounds):
-        """Run ``jobs``, name -> Job, one after the other and that so many times, for timing.
+        """Run ``jobs``, name -> Job, one after the other, in so many rounds, for timing.
 
         Every round begins with another job.  Returns name -> list of Finished, one per round.
         """
@@ -148,7 +148,7 @@ class Lab:
         """Run a deck for every combination of ``axes``, a dictionary variable -> values.
 
         ``settings``: further variables, or a function of the combination (a dictionary) that returns
-        them; "steps" must be among all of them.  ``options`` are those of ``many``.  Returns tuple of
+        them; "steps" must be among all of them.  ``options`` as in ``many``.  Returns tuple of
         values -> ``read(finished)``; a tuple of one value is that value.
         """
         jobs, keys = {}, {}

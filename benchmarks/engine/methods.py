@@ -24,7 +24,7 @@ class Method:
 
     @property
     def gear(self):
-        """Whether it is fix gear/quat."""
+        """True if it is fix gear/quat."""
         return self.kind != "rigid"
 
 
@@ -57,9 +57,9 @@ def rigid(style, method):
     return Method(style.replace("/", "-"), f"fix {style}", {"method": method}, "rigid")
 
 
-#: what the fix takes for smooth motion unless told: values of each formulation, and passes
+#: defaults of the fix for smooth motion: values of each formulation, and passes
 DEFAULT_VALUES, DEFAULT_PASSES = {"second": 9, "first": 8}, 0
-#: these defaults, and those of version 0.2, which took Gear's coefficients
+#: these defaults, and the defaults of version 0.2, which used Gear's coefficients
 DEFAULTS = {f: gear(f, n, passes=DEFAULT_PASSES) for f, n in DEFAULT_VALUES.items()}
 GEARS = {f: gear(f, n, passes=2, corrector="gear") for f, n in (("second", 8), ("first", 6))}
 #: the fix without a keyword, which chooses the number of values itself

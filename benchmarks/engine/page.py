@@ -34,8 +34,8 @@ def rounded(number):
 def _environment(page, finding):
     """Jinja2 with the filters and functions of the templates; undefined names are errors.
 
-    ``x | to(".1e")`` formats a number, ``n | grouped`` a large one, and ``n | rounded`` keeps two digits
-    of it; ``table(name)`` shows a table of the finding, ``measured(measurements)`` a table of
+    ``x | to(".1e")`` formats a number, ``n | grouped`` a large one, and ``n | rounded`` keeps two digits of it.
+    ``table(name)`` shows a table of the finding, ``measured(measurements)`` a table of
     measurements, ``picture(name, caption)`` a picture with its caption.  Pictures of ``page`` are beside
     it, in the folder of its name.
     """

@@ -1,4 +1,4 @@
-"""Pictures made of panels: a study says what is in them, and draw() draws them all alike."""
+"""Pictures made of panels: a study defines their contents, and draw() draws all of them in the same way."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ import numpy as np  # noqa: E402
 
 from gearquat_analysis.style import COLOR, STYLE  # noqa: E402
 
-#: what pictures of the paper's cases say of the cage
+#: note on the cage in pictures of the paper's cases
 RECONSTRUCTED = "charges of the cage: reconstructed"
 
 
@@ -36,7 +36,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Bars:
-    """Horizontal bars: ``names`` from top to bottom, what was ``below`` in gray, and ``more`` on top."""
+    """Horizontal bars: ``names`` from top to bottom, ``below`` in gray, and ``more`` on top."""
 
     names: tuple
     below: np.ndarray

@@ -1,4 +1,4 @@
-"""Where and with what something was measured."""
+"""The machine and the software of a measurement."""
 
 import datetime
 import os
@@ -16,7 +16,7 @@ PACKAGES = ("lammps-gearquat", "numpy", "scipy")
 
 
 def processor():
-    """Name of the processor, as Linux tells it."""
+    """Name of the processor, as reported by Linux."""
     try:
         text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
     except OSError:
@@ -54,7 +54,7 @@ def lammps_of(logs):
 
 
 def sentence(out, at):
-    """One sentence: what measured, where, when and at which commit.  ``out``: folder of the run."""
+    """One sentence on the measurement: software, machine, date and commit.  ``out``: folder of the run."""
     cores = len(os.sched_getaffinity(0))
     logs = Path(out) / "logs"
     versions = [lammps_of(logs)] if logs.is_dir() else []

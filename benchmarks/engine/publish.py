@@ -1,7 +1,7 @@
 """Put the page, the pictures and the blocks of a study into this checkout.
 
-A block is what a study has written into a page that people write: it lies between two markers, of
-which the first names the command.
+A block is text that a study has written into a hand-written page, between two markers; the first marker names the
+command.
 """
 
 import shutil
@@ -13,7 +13,7 @@ ANY_BEGIN, END = "<!-- begin: ", "<!-- end -->"
 
 
 class PublishError(RuntimeError):
-    """A page lacks the place to write to."""
+    """A page lacks the markers to write between."""
 
 
 def begin(command):

@@ -1,4 +1,4 @@
-"""Run LAMMPS as a program.  Nothing is known here about what the decks compute."""
+"""Run LAMMPS as a program.  This module is independent of the contents of decks."""
 
 import os
 import re

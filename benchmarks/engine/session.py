@@ -32,10 +32,10 @@ class RunError(LammpsError):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run left, in the units of the run.
+    """The outcome of a run, in the units of the run.
 
     ``seconds``: wall time of the ``run`` command; ``modify``: LAMMPS' "Modify" time, NaN if its timers
-    are off; ``start``: force evaluations of the method's own start; ``ids``, ``masses`` and
+    are off; ``start``: force evaluations of the method's own start.  ``ids``, ``masses`` and
     ``molecules`` (n,), ``before`` and ``after`` (n, 3): unwrapped positions of all atoms, sorted by ID,
     before and after the run; ``thermo``: column -> samples.
     """
@@ -76,7 +76,7 @@ def _run(lmp, variables, composition):
 
 
 def perform(deck, variables, log, composition, tell):
-    """Outcome of a deck whose last line is ``run ${steps}`` after ``${last}``, as in in.motion; what a Worker is asked.
+    """Outcome of a deck whose last line is ``run ${steps}`` after ``${last}``, as in in.motion; a request to a Worker.
 
     ``composition``: parts of the step, of any sign, that are steps of their own and make up each step.
     Raises LammpsError if the scene cannot be defined, RunError if its run fails.
@@ -157,7 +157,7 @@ class Timing:
 
     @property
     def steady(self):
-        """Whether the median is known well enough, or the run is not short."""
+        """True if the median is known well enough, or the run is not short."""
         return self.median > SHORT or self.error < STEADY
 
 

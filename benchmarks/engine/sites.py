@@ -1,4 +1,4 @@
-"""Sites of a dump, all frames at once, and how far bodies are from where they should be."""
+"""Sites of a dump, all frames at once, and errors of the poses of bodies."""
 
 from dataclasses import dataclass
 
@@ -36,7 +36,7 @@ def pose_errors(masses, molecules, before, after, reference):
     """Root mean squares over the bodies: distance of the centers of mass, angle of orientations.
 
     ``masses`` and ``molecules`` (n,), 0 for sites in no body; unwrapped positions (n, 3) ``before``,
-    which give the shapes, ``after``, and those of the ``reference``.  Radians; infinite if a body is
+    which give the shapes, ``after`` and in the ``reference``.  Radians; infinite if a body is
     lost.
     """
     if not np.isfinite(after).all():

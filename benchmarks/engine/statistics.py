@@ -12,7 +12,7 @@ CONFIDENCE = 0.99
 
 @dataclass(frozen=True)
 class Mean:
-    """A mean with its standard error and the degrees of freedom of the latter."""
+    """A mean, its standard error, and the degrees of freedom of this error."""
 
     value: np.ndarray
     error: np.ndarray
@@ -48,7 +48,7 @@ def mean_of_series(series, count):
 
 
 def with_error(value, error, sign=""):
-    """Value ± error with two digits of the error; ``sign``: "+" to show that of a positive value."""
+    """Value ± error with two digits of the error; ``sign``: "+" shows a positive sign."""
     digits = min(max(0, 1 - math.floor(math.log10(error))), 4) if error > 0 else 4
     return f"{value:{sign}.{digits}f} ± {error:.{digits}f}"
 
@@ -59,12 +59,13 @@ def deviation(mean, other):
 
 
 def largest_deviation(mean, other, count):
-    """How many standard errors the largest of ``count`` differences of two Means may have."""
+    """The bound, in standard errors, below which the largest of ``count`` differences of two Means is not
+    significant."""
     return allowed(count, mean.freedoms + other.freedoms)
 
 
 def allowed(count, freedoms):
-    """How many standard errors the largest of ``count`` deviations may have.
+    """The bound, in standard errors, below which the largest of ``count`` deviations is not significant.
 
     From Student's t distribution with the degrees of freedom of the errors, and Bonferroni's
     correction.
@@ -75,8 +76,8 @@ def allowed(count, freedoms):
 def slope(time, values):
     """Least-squares slope of ``values`` (n,) against ``time`` (n,), and its standard error.
 
-    Neighboring errors are alike, so the scatter about the line does not shrink as it would with n
-    independent samples: the standard error is that of W. K. Newey and K. D. West, Econometrica 55,
+    Neighboring errors are alike, so the scatter about the line does not shrink as it would with n independent
+    samples: the standard error follows W. K. Newey and K. D. West, Econometrica 55,
     703 (1987), Eq. 5, with lags up to a twentieth of the series.  Raises ValueError for fewer than 20
     samples.
     """

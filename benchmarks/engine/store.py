@@ -8,7 +8,7 @@ from jsonpickle.ext.numpy import NumpyNDArrayHandlerView, register_handlers
 
 
 class _Values(NumpyNDArrayHandlerView):
-    """Arrays by value: jsonpickle's own handler of views may give back other numbers."""
+    """Arrays by value: jsonpickle's own handler of views may return other numbers."""
 
     def flatten(self, obj, data):
         return super().flatten(np.array(obj, order="C"), data)
@@ -24,7 +24,7 @@ def write_data(path, data):
 
 
 def read_data(path):
-    """Data as ``write_data`` got it."""
+    """The data passed to ``write_data``."""
     return jsonpickle.decode(path.read_text(encoding="utf-8"), keys=True, on_missing="error")
 
 

@@ -1,4 +1,4 @@
-"""A study and what it finds."""
+"""A study and its findings."""
 
 import math
 from collections.abc import Callable
@@ -39,7 +39,7 @@ class Measurement:
 
     @property
     def holds(self):
-        """Whether the value lies within its bounds.  NaN lies within none."""
+        """True if the value lies within its bounds.  NaN lies within none."""
         least = -math.inf if self.least is None else self.least
         most = math.inf if self.most is None else self.most
         return not self.bounds or bool(least <= self.value <= most)
@@ -55,7 +55,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Finding:
-    """What a study makes of its data.
+    """The results of a study, derived from its data.
 
     ``measurements``: a sequence of Measurement.  ``tables``: name -> Table; each is left as a CSV file.
     ``pictures``: name -> tuple of Panel (see panels.py), or a function that draws into the path it gets;
@@ -72,7 +72,7 @@ class Finding:
 
 @dataclass
 class Study:
-    """A study: how it measures, how it judges, and where its results are shown.
+    """A study: its measurement, its judgment, and the pages that show its results.
 
     ``key``: its name on the command line.  ``title``: the heading of its page.  ``seconds``: duration on
     two quiet cores.  ``measure(lab)`` returns plain data, ``find(data)`` a Finding.  ``page``: the page

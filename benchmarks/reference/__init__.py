@@ -1,7 +1,7 @@
 """Reference solutions of rigid-body motion, independent of the fix, to judge errors of 1e-12.
 
 Nothing here shares code with the fix or the scene generator.  Everything works in NumPy's long
-double.  What there is, and how it is used::
+double.  Contents and use::
 
     from benchmarks.reference import (
         Cage, FreeField, State, Problem, paper_problem, bodies_from_sites,
@@ -35,10 +35,9 @@ double.  What there is, and how it is used::
 
 State of a body: center of mass and velocity in space axes; q in the paper's order (vector part
 first, scalar last; A(q) of Eq. 8 turns space into body axes); omega_body along the principal axes,
-radians per unit of time.  Units are those of the field.  Which principal axis is which, and its
-direction, differ between problems made in different ways: compare q within one problem, sites
-between two.  A reference is made once and kept in memory; with ``folder`` also on disk, under a
-name made of the problem's content.
+radians per unit of time.  Units follow the field.  The order and directions of the principal axes depend on how a
+problem was made: compare q within one problem, sites between two.  A reference is made once and kept in memory; with
+``folder`` also on disk, under a name made of the problem's content.
 
 Files: quaternion.py; equations.py (bodies, state, rates, energies); fields.py (cage, none);
 lammps_forces.py (LAMMPS' own forces); paper.py (the paper's body and starts); integrators.py

@@ -191,7 +191,7 @@ def energies(lowest, highest, limit=0.8):
 
 
 class CollisionIntegrals:
-    """Omega(l, s) of a potential for any temperatures from 0.2 to 100, in units of those of rigid spheres.
+    """Omega(l, s) of a potential for any temperatures from 0.2 to 100, in units of the integrals of rigid spheres.
 
     ``limit``: the largest energy at which bodies orbit, 0.8 of Lennard-Jones atoms.
     """

@@ -1,4 +1,4 @@
-"""Coefficients of a corrector from its spurious roots, and from what order asks of them.
+"""Coefficients of a corrector from its spurious roots and the order conditions.
 
 The history is y_j = h^j y^(j)/j!, j = 0 ... N-1, P is Pascal's triangle, c the coefficients, and q the
 order of the equation.  Without forces a step is (1 - c e_q') P; its roots are 1, q times, and the N-q-1
@@ -13,7 +13,7 @@ from scipy.linalg import pascal, solve_triangular
 
 
 def placed(order, roots):
-    """c_q ... c_(N-1), of which c_q = 1, for N-q-1 spurious roots, in conjugate pairs or real.
+    """c_q ... c_(N-1), with c_q = 1, for N-q-1 spurious roots, in conjugate pairs or real.
 
     (lambda - P)^-1 is the sum of (P - 1)^k / (lambda - 1)^(k+1), so that the polynomial of the roots has
     sum_j [(P - 1)^k]_qj c_j in front of (lambda - 1)^(N-q-1-k).

@@ -1,8 +1,8 @@
 """Deflection by a central potential for many energies and impact parameters at once: the stand-in of flights of two atoms.
 
-Formulas and quadrature are those of central.py; here the turning point is searched for.  For b^2 above
-B(r_o), where bodies of the energy E orbit, it is outside of r_o, or else inside of r_i, the inner radius at which
-W(r) = U + r U' / 2, which is E where B has an extremum, is E.
+Formulas and quadrature are as in central.py; here the turning point is searched for.  Bodies of energy E orbit at
+r_o.  For b^2 above B(r_o), the turning point is outside of r_o, or else inside of r_i, the inner radius with W(r_i) =
+E.  Here W(r) = U + r U' / 2, which equals E where B has an extremum.
 """
 
 import numpy as np

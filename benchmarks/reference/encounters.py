@@ -84,8 +84,8 @@ def rotation(q):
 
 
 class Encounter:
-    """Two bodies: ``masses`` (2,), ``sites`` and ``site_masses`` of both, (n, 3) and (n,), in the pose of the deck about
-    their centers, ``forces``, a sequence of Dispersion and Charges, and ``factor``, the energy of a unit of mass
+    """Two bodies: ``masses`` (2,), ``sites`` and ``site_masses`` of both, (n, 3) and (n,), in the pose of the deck
+    about their centers.  ``forces``, a sequence of Dispersion and Charges; ``factor``, the energy of a unit of mass
     times length^2 / time^2.
     """
 

@@ -8,7 +8,7 @@ the principal axes.  All B bodies are integrated as one array of shape (B, 13).
     q' = 1/2 q (omega_body, 0)          (Eq. 5)
     omega_body' = (torque_body - omega_body x I omega_body) / I     (Eq. 12)
 
-Units are those of the field (LAMMPS' "units"): ``field.force_to_acceleration`` turns force / mass
+Units follow the field (LAMMPS' "units"): ``field.force_to_acceleration`` turns force / mass
 into acceleration, ``field.kinetic_to_energy`` turns mass velocity^2 into energy; both are 1 in lj.
 """
 
@@ -31,7 +31,7 @@ NO_INERTIA = 1e-7
 
 @dataclass(frozen=True)
 class State:
-    """Where B bodies are: ``center``, ``velocity`` (B, 3) in space axes, ``q`` (B, 4),
+    """State of B bodies: ``center``, ``velocity`` (B, 3) in space axes, ``q`` (B, 4),
     ``omega_body`` (B, 3) along the principal axes."""
 
     center: np.ndarray
@@ -61,9 +61,9 @@ class State:
 def principal_axes(tensors):
     """Moments (B, 3), falling, and axes (B, 3, 3) of symmetric tensors (B, 3, 3).
 
-    Columns of ``axes`` are the axes, right-handed: it turns body components into those of the frame
-    the tensor is given in.  Cyclic Jacobi rotations, because LAPACK stops at double precision:
-    here both are good to a few units in the last place of the tensor's own float type.
+    Columns of ``axes`` are the axes, right-handed: it turns body components into components in the frame of the
+    tensor.  Cyclic Jacobi rotations, because LAPACK stops at double precision: here both are good to a few units in
+    the last place of the tensor's own float type.
     """
     a = np.array(tensors)
     axes = np.zeros_like(a) + np.eye(3, dtype=a.dtype)

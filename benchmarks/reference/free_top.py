@@ -45,7 +45,7 @@ def _length(a):
 
 
 def _uniform(moments, omega):
-    """Whether omega is constant: I omega parallel to omega, to the last digits of the data."""
+    """True if omega is constant: I omega parallel to omega, to the last digits of the data."""
     momentum = moments * omega
     torque, size = qt.cross(omega, momentum), _length(omega) * _length(momentum)
     return (abs(torque) <= size * mp.mpf(10) ** (8 - DIGITS)).all()

@@ -8,9 +8,9 @@ One step of size H from y:
     extrapolate  T = sum_n w_n T_n: h -> 0 by exact rational weights; order 2K
     judge        |T - T'| with T' from all but n = 2, against tolerance x size of the state
 
-Changes, not values, are extrapolated, and they are added up with a carry (Kahan): rounding is that
-of a small number, and the sum of a long run keeps the digits of the float type.
-W. B. Gragg, SIAM J. Numer. Anal. 2, 384 (1965); R. Bulirsch and J. Stoer, Numer. Math. 8, 1 (1966).
+Changes, not values, are extrapolated, and they are added up with a carry (Kahan): rounding is relative to a small
+number, and the sum of a long run keeps the digits of the float type. W. B. Gragg, SIAM J. Numer. Anal. 2, 384 (1965);
+R. Bulirsch and J. Stoer, Numer. Math. 8, 1 (1966).
 """
 
 from fractions import Fraction
@@ -83,7 +83,7 @@ class GraggBulirschStoer:
         change = np.tensordot(self.weights, table, axes=1)
         error = np.abs(np.tensordot(self.judging, table, axes=1))
         scale = np.maximum(self.scales(y), self.scales(change))
-        # a part that is and stays zero (no spin, no force) has no error either
+        # a part that stays zero (no spin, no force) has zero error
         relative = error / np.where(scale > 0, scale, 1)
         return change, float(relative.max() / self.tolerance)
 
@@ -104,13 +104,13 @@ class GraggBulirschStoer:
         return abs(h) * min(GROW, max(SHRINK, best))
 
     def advance(self, y, times):
-        """States at ``times`` (monotonic, the first is that of y), shape (len(times), *y.shape)."""
+        """States at ``times`` (monotonic; y is the state at the first), shape (len(times), *y.shape)."""
         carry, t, states = np.zeros_like(y), times[0], [y]
         slope = self._rates(t, y)
         step = first = self.fixed_step or self.first_step(y, slope, times[-1] - times[0])
         for stop in times[1:]:
             while t != stop:
-                # equal parts of what is left, so that the last one is no splinter
+                # equal parts of the remaining time, so that the last one is not tiny
                 parts = max(np.ceil(abs(stop - t) / step * (1 - 1e-12)), 1)
                 h = (stop - t) / parts
                 change, error = self._change(t, y, slope, h)

@@ -1,13 +1,13 @@
 """Forces and potential energy from LAMMPS itself, in this process, for any input script.
 
 The script is read with LAMMPS' own switch -skiprun, so it comes to its end without a single step:
-its start is that of the script with every ``run`` and ``minimize`` left out.  The fixes that
+it starts as if every ``run`` and ``minimize`` were left out.  The fixes that
 integrate are then taken away, and every evaluation is
 
     place atoms -> run 1 pre no post no -> read forces
 
 with the neighbour list checked at every evaluation: LAMMPS rebuilds it when an atom has moved half
-the skin, and the forces are those at exactly the given positions, rounded to double.  An atom is
+the skin, and the forces are computed at exactly the given positions, rounded to double.  An atom is
 put at the periodic image nearest to where LAMMPS has it, so unwrapped positions may lie anywhere.
 """
 
@@ -52,7 +52,7 @@ class LammpsForces:
 
     ``ids`` are the atom IDs of the sites, shape (S,), in the order of all positions and forces:
     every atom, rising, until ``choose`` is called.  Atoms not chosen stay where they are.
-    ``variables`` are those of ``-var``; ``evaluations`` counts.  Close it, or use it as a context.
+    ``variables`` as for ``-var``; ``evaluations`` counts.  Close it, or use it as a context.
     """
 
     dtype = np.float64
@@ -182,7 +182,7 @@ class LammpsForces:
             raise DeckError(f"{self.deck.name}: there is no atom {unknown[0]}")
         self._row = np.full(len(self._all_ids), -1)
         self._row[np.searchsorted(self._all_ids, self.ids)] = np.arange(len(self.ids))
-        # taken here, where the neighbour list is that of the start, so that it repeats to the bit
+        # taken here, with the neighbor list of the start, so that it repeats to the bit
         energy, forces = self.energy_and_forces(self.start_positions())
         parts = (self.ids, self._box, np.array([energy]), forces)
         text = f"LAMMPS {self.lmp.version()} ".encode() + b"".join(p.tobytes() for p in parts)

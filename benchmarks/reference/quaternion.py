@@ -34,10 +34,10 @@ def normalised(q):
 
 
 def rotation_space_body(q):
-    """Rotation matrices body -> space, shape (..., 3, 3), also of a q that is not quite a unit.
+    """Rotation matrices body -> space, shape (..., 3, 3), also of a q whose length is only nearly one.
 
-    Division by |q|^2 keeps the sites rigid whatever the length of q, so a solver that knows nothing
-    of the constraint cannot deform the body.
+    Division by |q|^2 keeps the sites rigid whatever the length of q, so a solver without the constraint cannot deform
+    the body.
     """
     x, y, z, s = (q[..., k] for k in range(4))
     matrix = np.empty(q.shape[:-1] + (3, 3), dtype=q.dtype)

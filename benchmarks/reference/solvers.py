@@ -1,4 +1,4 @@
-"""What accuracy costs with SciPy's solvers, DOP853 and LSODA, counted in evaluations of the forces.
+"""The cost of accuracy with SciPy's solvers DOP853 and LSODA, in force evaluations.
 
 Every call of the right-hand side counts, whoever makes it and whatever for; LSODA chooses between
 Adams and BDF itself and gets no Jacobian, so the calls for one of differences are among them.  It
@@ -27,7 +27,7 @@ SMALLEST_TOLERANCE = 100 * np.finfo(float).eps
 @dataclass(frozen=True)
 class Errors:
     """``center`` (B,), distance of the centers of mass; ``angle`` (B,), radians, of the rotation
-    between the orientations; ``energy``, total energy at the end less that at the start."""
+    between the orientations; ``energy``, change of the total energy from start to end."""
 
     center: np.ndarray
     angle: np.ndarray
@@ -66,12 +66,12 @@ def state_errors(problem, reference, state):
 
 
 def available():
-    """METHODS, and those of CVODE where they can be had."""
+    """METHODS, and the methods of CVODE if it is installed."""
     return METHODS + (tuple(CVODE) if find_spec("sksundae") else ())
 
 
 def _of_cvode(rates, span, start, method, rtol, atol):
-    """What ``solve_ivp`` does, by CVODE: (success, message, states at its own steps (n, size))."""
+    """``solve_ivp`` with CVODE: (success, message, states at its own steps (n, size))."""
     from sksundae.cvode import CVODE as Solver
 
     def fill(t, y, found):

@@ -9,9 +9,9 @@ Nystroem keep their order.  An evaluation of the forces counts for each kick, an
 step shares its evaluation with the first one of the next step.
 
 S. Blanes and P. C. Moan, J. Comput. Appl. Math. 142, 313 (2002): SRKN6b, SRKN11b and SRKN14a.
-W. Kahan and R.-C. Li, Math. Comput. 66, 1089 (1997): s17odr8a.  The free rotation by Jacobi's
-elliptic functions is that of R. van Zon and J. Schofield, Phys. Rev. E 75, 056701 (2007), with the
-formulas of free_top.py in double precision: ``FreeRotation``.
+W. Kahan and R.-C. Li, Math. Comput. 66, 1089 (1997): s17odr8a.  The free rotation by Jacobi's elliptic functions
+follows R. van Zon and J. Schofield, Phys. Rev. E 75, 056701 (2007), with the formulas of free_top.py in double
+precision: ``FreeRotation``.
 """
 
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ from .solvers import WorkPoint, state_errors
 def symmetric(*half, even):
     """A sequence that reads the same backwards and has the sum 1, from the numbers it begins with.
 
-    What they leave is in the middle: a number of its own, or one that stands there twice (``even``).
+    The remainder is in the middle: a separate number, or one that occurs there twice (``even``).
     """
     rest = 1.0 - 2.0 * sum(half)
     middle = (rest / 2, rest / 2) if even else (rest,)

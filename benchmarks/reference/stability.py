@@ -1,14 +1,14 @@
 """One step of the methods for the linear test equation as a matrix, and their largest stable steps.
 
-Test equation: x'' = -omega^2 x, one force evaluation a step, at the predicted position.  One step is
-a linear map of the history y_j = h^j x^(j) / j!, and counts as stable while no spurious root, which is
-an eigenvalue farther than OWN from exp(+-i omega h), lies outside of the unit circle.  The oscillation
-itself may grow or decay, which is error, not instability.  Source of the analysis: C. W. Gear,
+Test equation: x'' = -omega^2 x, one force evaluation a step, at the predicted position.  One step is a linear map of
+the history y_j = h^j x^(j) / j!.  Spurious roots are eigenvalues farther than OWN from exp(+-i omega h).  A step
+counts as stable if no spurious root lies outside of the unit circle.  The oscillation itself may grow or decay, which
+is error, not instability.  Source of the analysis: C. W. Gear,
 "Numerical Initial Value Problems in Ordinary Differential Equations" (1971).
 
 Gear's coefficients, for N values (rows j = 0 ... N-1), from the polynomial P_n(s) = (1+s)(1+s/2)...(1+s/n):
   first-order equation    sum_j j c_j s^(j-1) = P_(N-2)(s),  c_0 = integral of P_(N-1) over (-1, 0)
-  second-order equation   c_(j+1) = 2 a_j / (j+1), a_j those of a first-order equation with N-1 values;
+  second-order equation   c_(j+1) = 2 a_j / (j+1), a_j from a first-order equation with N-1 values;
                           c_0 = 2 times the integral of -s P_(N-2)(s) over (-1, 0) ("velocity"),
                           that times (N-2)/(N-1) ("position")
 """
@@ -55,9 +55,9 @@ def second_order_coefficients(values, c0="position"):
 def second_step(c, omega_h, rate=0.0, passes=1):
     """Matrix (N, N) of one step of the second formulation with coefficients ``c`` (N,).
 
-    Equation: x'' = -omega^2 x + (rate/h) x', where the force is that at the predicted x and the term of
-    the rate is found anew in each pass, as the kernel does it.  Elements are of the type of those of
-    ``c`` (an array of floats, or of objects such as mpmath's numbers).
+    Equation: x'' = -omega^2 x + (rate/h) x', with the force at the predicted x; each pass recomputes the term of the
+    rate, as the kernel does.  Elements have the same type as in ``c`` (an array of floats, or of objects such as
+    mpmath's numbers).
     """
     predict = pascal(len(c), "upper").astype(c.dtype)
     step = predict

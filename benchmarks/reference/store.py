@@ -75,10 +75,9 @@ def reference_states(problem, times, folder=None, tolerance=None, fixed_step=Non
     """States at ``times``, rising from 0: list of State in long double (``.double`` rounds them).
 
     Without forces they are exact (free_top.py).  In an extended field they are good to about 1e-14
-    of the size of the scene while the motion is not chaotic; in LAMMPS' field, whose forces are
-    double, to what that rounding allows, ten times less in the paper's cage.  ``folder`` keeps
-    results from one process to the next.  ``tolerance`` and ``fixed_step``, for forces that jump,
-    are those of integrators.integrate.
+    of the size of the scene while the motion is not chaotic; in LAMMPS' field, whose forces are double, rounding
+    limits them: ten times less accurate in the paper's cage.  ``folder`` keeps results from one process to the next.
+    ``tolerance`` and ``fixed_step``, for forces that jump, as in integrators.integrate.
     """
     _require_extended(problem.dtype)
     accuracy = {"tolerance": tolerance, "fixed_step": fixed_step}

@@ -326,7 +326,7 @@ def panels(results):
         Panel(title, "time", "|K/K(0) - 1|", tuple(history), log="xy"),
         Panel("drift by step", "step", drift, tuple(drifts), log="xy", xticks=tuple(dts)),
         Panel("pair distribution of water", pairs, "g(r)", tuple(distributions), log=""),
-        Panel("less that of the thermostat", pairs, "g(r)", tuple(differences), log=""),
+        Panel("minus g(r) with the thermostat", pairs, "g(r)", tuple(differences), log=""),
     )
 
 

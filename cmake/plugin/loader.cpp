@@ -32,7 +32,7 @@ constexpr int TAGINT_BYTES = 4;
 #endif
 constexpr int BIGINT_BYTES = 8;
 
-// MPI libraries of one family can stand in for each other, those of two cannot.
+// MPI libraries of one family can replace each other; libraries of different families cannot.
 constexpr const char *FAMILY_OPEN_MPI = "Open MPI";
 constexpr const char *FAMILY_MPICH = "MPICH";
 constexpr const char *FAMILY_STUBS = "no MPI (LAMMPS' stubs)";
@@ -71,7 +71,7 @@ std::string date_of(int number)
       std::to_string(number / 10000);
 }
 
-// first line of what the running MPI says about itself; empty if there is none
+// first line of the version string of the running MPI; empty if there is none
 std::string running_mpi()
 {
   auto get_version = look_up<int(char *, int *)>("MPI_Get_library_version");

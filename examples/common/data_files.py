@@ -1,4 +1,4 @@
-"""What the programs that write data files share: vectors, LAMMPS' format, and where files go.
+"""Functions shared by the programs that write data files: vectors, LAMMPS' format, and paths.
 
 Standard library only, sums rounded once (``fsum``), so that files come out the same to the last digit
 wherever they are written.

@@ -16,7 +16,7 @@ Body in a Steady-State Force Field", Tables 3 to 6.  The paper does not print tw
 * along which axes its principal moments lie, hence two bodies from one start:
   ``consistent``  a real rigid body: moments along the principal axes of the four sites, which are
                   tilted by 5.6 degrees about x against the axes the Euler angles turn;
-  ``unrotated``   the same moments along the unrotated axes, as if the sites had been forgotten when
+  ``unrotated``   the same moments along the unrotated axes, as if the sites had been ignored when
                   the tensor was made diagonal.  Only an infile can state such a body.
 
 Units: lj.  Frames: ``site`` (axes in which the sites are listed, origin at the center of mass),

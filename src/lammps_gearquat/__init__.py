@@ -1,10 +1,10 @@
-"""GEARQUAT for LAMMPS. Imports nothing heavy: `lmp` imports this at every start on every rank."""
+"""GEARQUAT for LAMMPS. Imports nothing heavy: every rank imports this module whenever `lmp` starts."""
 
 import os
 
 
 def plugin_folder() -> str:
-    """The folder with gearquatplugin.so; in an editable install it is not that of `__file__`."""
+    """The folder with gearquatplugin.so; in an editable install, `__file__` lies elsewhere."""
     for folder in __path__:
         if os.path.exists(os.path.join(folder, "gearquatplugin.so")):
             return str(folder)

@@ -23,8 +23,8 @@ from .commands.scatter import scatter
 def _apart(command, module):
     """``command``, executed by ``python -m module`` in a process of its own once its words are understood.
 
-    The analysis imports MDAnalysis, which is under the LGPL 3 or later and may not be combined with code
-    under the GPL 2 alone, as this package is.
+    The analysis imports MDAnalysis, which is under the LGPL 3 or later.  Code under the GPL 2 alone, such as this
+    package, must not be combined with it.
     """
 
     def parse_args(context, words):

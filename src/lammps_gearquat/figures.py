@@ -48,7 +48,7 @@ def _look(keywords, methods):
 def draw_cost(path, deck, costs):
     """Error against evaluations and against seconds, both per unit of time."""
     time = deck.time_unit or "time unit"
-    title = f"What accuracy costs: {deck.path.name}, errors at t = {costs.end:.6g} {deck.time_unit}"
+    title = f"The cost of accuracy: {deck.path.name}, errors at t = {costs.end:.6g} {deck.time_unit}"
     panels = {"evaluations": "evaluations of the forces", "seconds": "seconds"}
     with picture(path, title, ncols=2, figsize=(11, 4.8), sharey=True) as (figure, axes):
         for axis, (name, words) in zip(axes, panels.items()):

@@ -49,12 +49,12 @@ class Keyword:
 
     @property
     def arguments(self):
-        """How many words follow the keyword."""
+        """The number of words after the keyword."""
         return len(self.values.split()) if self.kind in ("mask", "numbers") else 1
 
     @property
     def options(self):
-        """The words of which one may follow the number of a keyword, and after it a number, its unit."""
+        """Words that may follow the number of a keyword; a second number, the unit, may follow the word."""
         return tuple(self.values.split(" and perhaps ")[1].split(" or ")) if " and perhaps " in self.values else ()
 
     @property
@@ -71,7 +71,7 @@ class Keyword:
 
     @property
     def of_one_formulation(self):
-        """Whether a value means something in one of the two formulations only."""
+        """True if a value means something in one of the two formulations only."""
         return len(self.ranges) > 1 or any(name == "formulation" for name, _, _ in self.requires)
 
 
@@ -82,7 +82,7 @@ def _condition(text):
 
 
 def parse(text):
-    """Name -> Keyword of what the fix has printed; raises RuntimeError if there is no list in it."""
+    """Name -> Keyword from the output of the fix; raises RuntimeError if it contains no list."""
     lines = iter(text.splitlines())
     titles = next((line for line in lines if re.match(r"keyword  +about  ", line)), None)
     if titles is None:

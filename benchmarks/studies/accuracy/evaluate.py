@@ -36,8 +36,8 @@ def asymptotic(steps, errors, limit=np.inf):
     """Mask of the points that show the order of a method.
 
     Above round-off: the error is at least ABOVE_FLOOR times ``rounding_floor``, at this and every larger step.
-    Not too coarse: the error is within DECADES decades of the smallest of these errors, and the step is at least
-    FINER times smaller than the largest usable step ``limit`` and PAST times smaller than a step at which leading
+    Not too coarse: the error is within DECADES decades of the smallest of these errors.  The step is at least FINER
+    times smaller than the largest usable step ``limit``, and at least PAST times smaller than a step at which leading
     terms cancel (``sign_change``).
     """
     steps, errors = np.asarray(steps, dtype=float), np.asarray(errors, dtype=float)

@@ -243,7 +243,7 @@ def _sample_panels(results):
     return (
         Panel(shift, "step, fs", "atm", shifts, **(by_step | {"xticks": dts[1:]})),
         Panel(after, "step, fs", "atm", instants, **by_step),
-        Panel("Temperature less that of all", "", "K", (zero, *parts), "", names, legend=False),
+        Panel("Temperature minus overall temperature", "", "K", (zero, *parts), "", names, legend=False),
     )
 
 

@@ -121,8 +121,9 @@ class Results:
     def fix_seconds(self, method, cells, ranks=1):
         """Seconds per step in the fix, shape (rounds,).
 
-        It is the sum of LAMMPS' "Modify", which includes the communication of the fix itself, and the increase of "Comm"
-        relative to a run without a fix, which is the time that the fix adds to LAMMPS' own communication.
+        It is the sum of LAMMPS' "Modify" and the increase of "Comm" relative to a run without a fix.
+        "Modify" includes the communication of the fix itself; the increase is the time that
+        the fix adds to LAMMPS' own communication.
         """
         bare = np.median([t.comm / t.steps for t in self.timings[FROZEN.key, cells, ranks]])
         own = self.timings[method.key, cells, ranks]

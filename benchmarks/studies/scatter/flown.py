@@ -74,9 +74,9 @@ def packed(state):
 def beside_reference(deck, temperature, largest, count, tick):
     """Array (count, 4) with the comparison of flights with DOP853.
 
-    The columns are the deviation of velocities relative to the initial relative speed, the deviation of angular momenta
-    relative to the largest final one, the number of sign changes of the radial velocity, and the relative deviation of
-    the relative velocity after the reversed flight.
+    The first two columns are the deviations of velocities, relative to the initial relative speed, and of angular
+    momenta, relative to the largest final one.  The others are the number of sign changes of the radial velocity, and
+    the relative deviation of the relative velocity after the reversed flight.
     """
     from lammps_gearquat.scatter.pair import open_pair
     from lammps_gearquat.scatter.sampling import Plan

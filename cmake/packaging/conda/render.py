@@ -1,4 +1,4 @@
-"""Prints the packages that rattler-build makes of recipe.yaml, and what each needs to run."""
+"""Prints the packages that rattler-build makes of recipe.yaml, and the run-time dependencies of each."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What the commands that run LAMMPS have in common: the options that say how a deck is read."""
+"""Options of the commands that run LAMMPS: how a deck is read."""
 
 import functools
 import signal
@@ -19,7 +19,7 @@ INTERRUPTED = 130
 
 
 def reading_options(*more):
-    """The options that say how a deck is read, in a group, and ``more`` of them."""
+    """The group of options about reading a deck, with ``more`` options."""
     return cloup.option_group(
         "The deck",
         cloup.option(
@@ -49,7 +49,7 @@ def reading_options(*more):
 
 
 def deck_options(function):
-    """The argument DECK and the options that say how it is read; they become the argument ``scene``."""
+    """The argument DECK and the options about reading it; they become the argument ``scene``."""
 
     @cloup.argument("deck", type=FILE, help="LAMMPS input script with a fix that moves rigid bodies.")
     @reading_options(
@@ -66,12 +66,12 @@ def deck_options(function):
 
 
 def announce(path, progress):
-    """Function that says what is done with a deck before its trials, above a progress bar."""
+    """Function that prints the actions on a deck before its trials, above a progress bar."""
     return lambda text: progress.write(f"{path.name}: {text}", file=sys.stderr)
 
 
 class _Log:
-    """A file for a progress bar: of what is written to it, ``stream`` gets a line every EVERY seconds.
+    """A file for a progress bar that passes one line to ``stream`` every EVERY seconds.
 
     It has no method isatty, so that the bar is not left out.
     """
@@ -98,7 +98,7 @@ def shown_progress(**options):
 
 @contextmanager
 def ending_cleanly(out):
-    """Make Ctrl-C and SIGTERM end the command with a message that the folder ``out`` is as it was."""
+    """Make Ctrl-C and SIGTERM end the command with a message that the folder ``out`` is unchanged."""
 
     def stop(*_):
         raise KeyboardInterrupt

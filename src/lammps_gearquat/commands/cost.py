@@ -18,7 +18,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
 )
 @deck_options
 @cloup.option_group(
-    "What is measured",
+    "Measurement",
     cloup.option(
         "--error",
         "errors",
@@ -37,7 +37,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
     cloup.option(
         "--time",
         type=POSITIVE,
-        help="Time of the trials.  Default: that of the deck's run, or what budget and chaos allow.",
+        help="Time of the trials.  Default: the time of the deck's run, or as long as budget and chaos allow.",
     ),
     cloup.option(
         "--drift",
@@ -57,7 +57,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
     ),
 )
 @cloup.option_group(
-    "What it takes and leaves",
+    "Budget and output",
     cloup.option(
         "--budget",
         type=POSITIVE,
@@ -69,7 +69,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
 )
 @failing_clearly(DeckError, LammpsError)
 def cost(scene, errors, time, norm, bound, budget, timings, tries, out):
-    """Measure what accuracy costs in the scene of DECK, and print the lines to put into it.
+    """Measure the cost of accuracy in the simulation of DECK, and print the lines to put into it.
 
     DECK is any LAMMPS input script with fix gear/quat, rigid, rigid/nve, rigid/small or
     rigid/nve/small.  It is followed up to its run; runs before that one are executed once, and all
@@ -77,9 +77,9 @@ def cost(scene, errors, time, norm, bound, budget, timings, tries, out):
     one and with the deck's own fix, which is recommended where no other is faster.  Errors are judged only as
     far as the finest trial is confirmed by a second one of the other formulation.
 
-    Where trajectories diverge before the end of the run, as in a liquid, and neither --error nor --time is given, long
-    runs are compared instead, by the drift of the energy and by the temperatures of translation and rotation.  No step is
-    recommended whose energy drifts by more than --drift.
+    Trajectories of a liquid diverge before the end of the run.  Then, unless --error or --time is given, long runs
+    are compared instead: by energy drift and by the temperatures of translation and rotation.  A step whose energy
+    drifts by more than --drift is not recommended.
     """
     begin = monotonic()
     from .. import figures

@@ -16,9 +16,9 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
 )
 @deck_options
 @cloup.option_group(
-    "What is measured",
+    "Measurement",
     cloup.option(
-        "--time", type=POSITIVE, help="Time to follow.  Default: that of the deck's run, if affordable."
+        "--time", type=POSITIVE, help="Time to follow.  Default: the time of the deck's run, if affordable."
     ),
     cloup.option(
         "--threshold",
@@ -36,7 +36,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
         "--a",
         "first",
         metavar="KEYWORDS",
-        help="First run: keywords of fix gear/quat, changing those of the deck.  Default: the deck as"
+        help="First run: keywords of fix gear/quat that change the deck's.  Default: the deck as"
         " it is.",
     ),
     cloup.option(
@@ -45,13 +45,13 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
         metavar="KEYWORDS",
         help="Second run, in the same way.  Default: keywords for small errors, which the command prints.",
     ),
-    cloup.option("--step-a", type=POSITIVE, help="First time step.  Default: that of the deck."),
+    cloup.option("--step-a", type=POSITIVE, help="First time step.  Default: the time step of the deck."),
     cloup.option(
         "--step-b", type=POSITIVE, help="Second time step.  Default: half of the first, or with --b the same."
     ),
 )
 @cloup.option_group(
-    "What it leaves", out_option("gearquat-horizon", "horizon.csv, parting.csv and horizon.png")
+    "Output", out_option("gearquat-horizon", "horizon.csv, parting.csv and horizon.png")
 )
 @failing_clearly(DeckError, LammpsError)
 def horizon(scene, time, thresholds, every, first, second, step_a, step_b, out):

@@ -12,9 +12,9 @@ from ..trials.script import DeckError
 from .common import reading_options
 
 FROM_ZERO = cloup.IntRange(min=0)
-#: what flights need, and parts that are merged have
+#: options for new flights; merged parts have them already
 OF_FLIGHTS = ("deck", "temperature", "energy", "first", "count", "replay")
-#: what determines the flights of a folder, one of which is replayed
+#: options that determine the flights of a folder; --replay takes one of these flights
 OF_FOLDERS = ("temperature", "energy", "rotation", "largest", "sigma", "first", "count")
 #: the largest ratio of two temperatures that follow each other, of several
 GAP = 3.0
@@ -73,7 +73,7 @@ INTERRUPTED = 130
 )
 @reading_options()
 @cloup.option_group(
-    "What it leaves",
+    "Output",
     cloup.option("--sigma", type=POSITIVE, help="Also divide by the integrals of rigid spheres of this diameter."),
     cloup.option(
         "--merge",
@@ -81,7 +81,7 @@ INTERRUPTED = 130
         type=cloup.Path(exists=True, file_okay=False, path_type=Path),
         multiple=True,
         metavar="FOLDER",
-        help="Instead of new flights, join those of this folder with those of others; repeatable.",
+        help="Instead of simulating, join the flights of this folder with others; repeatable.",
     ),
     cloup.option(
         "--replay",
@@ -138,7 +138,7 @@ def _flights(scene, asked, out, conduct):
 
 
 def _refuse(given, names, why):
-    """Options that ``why`` leaves without meaning."""
+    """Options that have no meaning because of ``why``."""
     for name in names:
         if given[name] not in (None, ()):
             raise DeckError(f"{why}: {name} has to be left out")
@@ -165,6 +165,6 @@ def _settled(asked):
     if energy is not None:
         asked |= {"temperature": None, "rotation": rotation or 0.0}
     elif temperatures == (rotation,):
-        asked["rotation"] = None  # that of translation
+        asked["rotation"] = None  # the temperature of translation
     asked["processes"] = asked["processes"] or len(os.sched_getaffinity(0))
     return asked

@@ -13,15 +13,15 @@ from .sampling import REPLICAS, Plan
 
 #: flights before errors are looked at, which doubles as long as they are too large
 FIRST_ROUND = 32 * REPLICAS
-#: what may be left out beyond the largest impact parameter, by the error that is asked for
+#: allowed loss beyond the largest impact parameter, in units of the requested error
 LEFT_OUT = 0.1
 
 
 def scatter(scene, asked, numbers, error, most, out, progress):
     """Simulate flights, and write the results into the folder ``out``; returns them as text.
 
-    ``scene``: arguments of ``open_pair``; ``asked``: those of ``simulate`` with processes, most_steps and sigma;
-    the others are those of ``simulate``.  Raises DeckError and LammpsError.
+    ``scene``: arguments of ``open_pair``; ``asked``: as in ``simulate``, with processes, most_steps and sigma; the
+    others as in ``simulate``.  Raises DeckError and LammpsError.
     """
     with Pool(scene, asked["processes"], asked["most_steps"]) as pool:
         wanted, rows = simulate(pool, asked, numbers, error, most, out, progress)
@@ -72,7 +72,7 @@ def _settle(pool, asked, error, out, progress):
 
 
 def _reachable(farthest, error, given):
-    """Raise DeckError if the error that is asked for cannot be reached because of what --largest leaves out."""
+    """Raise DeckError if the error that is asked for cannot be reached because --largest leaves out too much."""
     left = max((one["momentum"] or 0.0) for one in farthest.left)
     left = max(left, *((one["viscosity"] or 0.0) for one in farthest.left))
     if given and left >= error:
@@ -83,7 +83,7 @@ def _reachable(farthest, error, given):
 
 
 def rounds(most):
-    """Numbers of flights after which errors are looked at."""
+    """Numbers of flights after which errors are checked."""
     number = min(FIRST_ROUND, most)
     while number < most:
         yield number
@@ -118,7 +118,7 @@ def _until(pool, plan, farthest, numbers, error, most, out, progress):
 
 
 def _finished(found, error):
-    """Raise DeckError if flights that have not parted do not let errors become as small as asked for."""
+    """Raise DeckError if unparted flights keep the errors above the requested ones."""
     if found.guessed > error:
         raise DeckError(
             f"{report.unfinished(found)}; they are {found.guessed:.1e} of the averages, more than --error {error:g}, and no"

@@ -1,9 +1,9 @@
-"""Whether the forces between the bodies vanish smoothly at the cutoff, looked at before any flight.
+"""Check, before any flight, that the forces between the bodies vanish smoothly at the cutoff.
 
 The bodies approach each other along a line, in several poses.  Where the force jumps, the difference between two
 distances stays as large when they come closer to each other; where it is continuous it becomes half.  A jump is
-noticed if it is larger than what the force changes by otherwise between two distances of the first scan.  Energies
-that jump where forces do not, as those of lj/smooth, have another constant, which no flight feels.
+detected if it exceeds the usual change of the force between two distances of the first scan.  With lj/smooth, the
+energy jumps but the force does not: a constant offset, which does not affect flights.
 """
 
 import numpy as np
@@ -45,7 +45,7 @@ def check(pair, scale):
 
 
 def _scanned(pair, pose, highest):
-    """Distances (n,), from outside inwards up to the energy ``highest``, and forces (n,) there."""
+    """Distances (n,), descending until the energy reaches ``highest``, and forces (n,) there."""
     far, found = pair.interaction(pose, pair.reach)[0], []
     for distance in np.linspace(1.0, NEAREST, DISTANCES) * pair.reach:
         energy, force = pair.interaction(pose, distance)

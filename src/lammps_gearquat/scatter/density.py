@@ -1,7 +1,8 @@
 """The density from which energies and impact parameters are drawn, and the area that each flight represents.
 
-Of energies E of the relative translation, with x = E / kT, those count that make up the flux x exp(-x) dx times the
-changes in a flight, and slow bodies deflect each other at larger impact parameters b than fast ones.  With t = b^2,
+Let E be the energy of the relative translation and x = E / kT.  Energies count in proportion to the flux
+x exp(-x) dx times the changes in a flight.  Slow bodies deflect each other at larger impact parameters b than fast
+ones.  With t = b^2,
 
     S(E) = s0 + s1 (E / E0)^-p                             the square of the impact parameter up to which flights count
     P(x) = 0.2 P_1(x) + 0.4 P_2(x) + 0.4 P_3(x),           density of x, where P_k(x) is proportional to x^k S exp(-x)
@@ -35,7 +36,8 @@ NEWTON = 3
 @dataclass(frozen=True)
 class Density:
     """``scales``: kT of all temperatures, rising; ``single``: one energy, the only scale, instead of temperatures;
-    ``s0``, ``s1`` and ``power``, p, those of S, areas in units of the deck; ``largest``, the largest impact parameter.
+    ``s0``, ``s1`` and ``power`` (p), the parameters of S, areas in units of the deck; ``largest``, the largest
+    impact parameter.
     """
 
     scales: tuple
@@ -70,7 +72,7 @@ class Density:
     # --- energies -------------------------------------------------------------------------------
     @cached_property
     def shares(self):
-        """Parts (m,) of the mixture that the temperatures have."""
+        """Weights (m,) of the temperatures in the mixture."""
         return shares_of(len(self.scales))
 
     @cached_property
@@ -106,7 +108,7 @@ class Density:
         return self._mixed(self.densities(energy))
 
     def cumulative(self, energy):
-        """Part (n,) of the energies that is below ``energy`` (n,)."""
+        """Fraction (n,) of the energies below ``energy`` (n,)."""
         return self._mixed(self._sum(gammainc, energy))
 
     def _mixed(self, values):
@@ -115,7 +117,7 @@ class Density:
 
     @cached_property
     def _table(self):
-        """Logarithms of energies, and the parts below them, rising."""
+        """Logarithms of energies, and the fractions below them, ascending."""
         grid = np.geomspace(LOWEST * self.scales[0], HIGHEST * self.scales[-1], ENTRIES)
         below = self.cumulative(grid)
         rising = np.concatenate([[True], np.diff(below) > 0.0])

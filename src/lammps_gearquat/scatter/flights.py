@@ -1,4 +1,4 @@
-"""What is kept of a flight: a row of numbers and words, and many of them as columns."""
+"""The record of a flight: a row of numbers and words; many flights form columns."""
 
 from dataclasses import astuple, dataclass, fields
 
@@ -17,9 +17,9 @@ class Flight:
 
     ``flight``, its number; ``b``, impact parameter; ``energy``, of the relative translation, and
     ``rotation_1``, ``rotation_2``, of the rotation of both bodies, before and ``_after``; ``angle``, by which the
-    relative velocity has turned, in radians; ``time``, ``closest``, ``turnings``, ``steps``, ``repeats``, ``fate`` and
-    ``message`` are those of ``pair.End``.  Errors are changes from the start to the end: ``error_energy`` by the
-    energy at the start, ``error_momentum`` by that of one body, ``error_angular`` by the latter times
+    relative velocity has turned, in radians.  ``time``, ``closest``, ``turnings``, ``steps``, ``repeats``, ``fate``
+    and ``message`` as in ``pair.End``.  Errors are changes from the start to the end: ``error_energy`` by the
+    energy at the start, ``error_momentum`` by the momentum of one body, ``error_angular`` by this momentum times
     ``closest``.  Of flights that have not parted, what is ``_after`` and the angle are not a number.
     """
 
@@ -66,13 +66,14 @@ def fly(pair, plan, numbers, most_steps):
 
 
 def fly_pilots(pair, b, energy, thermal, random, most_steps):
-    """List of Flights with impact parameters, energies and kT of rotation (n,); ``random`` (n, m), what else is drawn."""
+    """List of Flights with impact parameters, energies and kT of rotation (n,); ``random`` (n, m), the other random
+    numbers."""
     planned = starts_of(pair, b, energy, thermal, random)
     return [judge(pair, 0, one, pair.fly(one[2], most_steps)) for one in planned]
 
 
 def judge(pair, number, planned, end):
-    """Flight, of what was planned (impact parameter, energy, Start) and came of it, an End."""
+    """Make a Flight from its plan (impact parameter, energy, Start) and its outcome, an End."""
     b, energy, start = planned
     before = pair.rotational_energy(start.quaternion, start.momentum)
     known = (int(number), b, energy, *before.tolist())

@@ -1,6 +1,6 @@
-"""What collision integrals say of a dilute gas, in first approximation of Chapman and Enskog.
+"""Properties of a dilute gas from collision integrals, in the first Chapman-Enskog approximation.
 
-Formulas are those of J. O. Hirschfelder, C. F. Curtiss and R. B. Bird, Molecular Theory of Gases and Liquids, Wiley
+Formulas are from J. O. Hirschfelder, C. F. Curtiss and R. B. Bird, Molecular Theory of Gases and Liquids, Wiley
 (1954), of E. A. Mason and E. W. McDaniel, Transport Properties of Ions in Gases, Wiley (1988), and of L.
 Monchick, K. S. Yun and E. A. Mason, J. Chem. Phys. 39, 654 (1963), below as HCB, MM and MYM.
 """
@@ -53,7 +53,7 @@ def collision_number(facts, temperature):
 
 
 def ratios():
-    """Name -> (function of the means, unit, what it is): those of reduced collision integrals, HCB (8.2-15)."""
+    """Name -> (function of the means, unit, description): combinations of reduced collision integrals, HCB (8.2-15)."""
     return {
         "A*": (lambda means: means["Omega(2,2)"] / (2.0 * means["Omega(1,1)"]), "", "Omega(2,2)* / Omega(1,1)*"),
         "C*": (lambda means: means["Omega(1,2)"] / (3.0 * means["Omega(1,1)"]), "", "Omega(1,2)* / Omega(1,1)*"),
@@ -61,10 +61,10 @@ def ratios():
 
 
 def reduced(facts, temperature, sigma):
-    """Collision integrals by those of rigid spheres of diameter ``sigma``, HCB (8.2-8), in the form of ratios."""
+    """Collision integrals divided by the integrals of rigid spheres of diameter ``sigma``, HCB (8.2-8), as ratios."""
     sphere = thermal_speed(facts, temperature) * np.pi * sigma**2
     spheres = {"Omega(1,1)": sphere, "Omega(2,2)": 2.0 * sphere, "Omega(1,2)": 3.0 * sphere}
-    about = "by that of rigid spheres"
+    about = "by the integral of rigid spheres"
     return {
         f"{name}*": (lambda means, name=name, whole=whole: means[name] / whole, "", f"{name} {about}")
         for name, whole in spheres.items()

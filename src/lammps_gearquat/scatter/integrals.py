@@ -10,21 +10,21 @@ Phys. Rev. 110, 1235 (1958)) the collision integrals are
 
     F_11 = x - (x y)^(1/2) cos chi,    F_12 = x F_11,    F_22 = x y sin^2 chi + 2 x d / 3.
 
-If rotation gains nothing they are those of J. O. Hirschfelder, C. F. Curtiss and R. B. Bird, Molecular
+If rotation gains nothing, they reduce to the integrals of J. O. Hirschfelder, C. F. Curtiss and R. B. Bird, Molecular
 Theory of Gases and Liquids, Wiley (1954), eq. (8.2-3), with F_ls = x^s (1 - cos^l chi).
 
-If rotation has the temperature of translation, then by detailed balance the mean of a function of x and y is
-that of the same with x and y exchanged.  Means of both have much smaller errors, because what is of
+If rotation has the temperature of translation, then by detailed balance the mean of a function of x and y does not
+change if x and y are exchanged.  Means of both have much smaller errors, because what is of
 first order in d cancels:
 
     F_11 = (x + y) / 2 - (x y)^(1/2) cos chi,    F_22 = x y sin^2 chi + d^2 / 3,
     F_12 = (x^2 + y^2) / 2 - (x + y) / 2 (x y)^(1/2) cos chi.
 
-The mean of this F_22 is that of x^2 sin^2 chi + d^2 / 3 - d^2 sin^2 chi / 2, the form of L. Monchick, K. S.
+The mean of this F_22 equals the mean of x^2 sin^2 chi + d^2 / 3 - d^2 sin^2 chi / 2, the form of L. Monchick, K. S.
 Yun and E. A. Mason, J. Chem. Phys. 39, 654 (1963).
 
 Flights that have not parted count as if they had left in all directions alike, without transfer of energy.  Errors
-include all that these flights contribute, and what lies beyond the largest impact parameter.
+include all contributions of these flights, and the part beyond the largest impact parameter.
 """
 
 from dataclasses import dataclass
@@ -83,7 +83,7 @@ class Collisions:
 
     @property
     def gain(self):
-        """What rotation has gained."""
+        """The energy gained by rotation."""
         return self.x - self.y
 
     def change(self, power):
@@ -110,7 +110,7 @@ def thermal_speed(facts, temperature):
 def integrands(columns, plan, facts, temperature):
     """Name -> (integrand (n,), unit, what it is): their means over flights are the quantities.
 
-    ``temperature``, one of those of the plan; None for one energy.
+    ``temperature``, a temperature of the plan; None for one energy.
     """
     area = weights(columns, plan, facts, temperature)
     if temperature is None:
@@ -133,7 +133,7 @@ def integrands(columns, plan, facts, temperature):
 
 
 def _of_rotation(area, pairs, facts):
-    """What rotation gains, if there is any; ``area`` is that of a flight."""
+    """Energy gained by rotation, if there is any; ``area`` is the area of a flight."""
     if not any(facts.freedoms):
         return {}
     return {
@@ -153,7 +153,7 @@ def weights(columns, plan, facts, temperature):
     flux, drawn = energy / scale**2 * np.exp(-energy / scale), density.densities(energy)
     if plan.mixes_rotation(facts.freedoms):
         rotation, scales = columns["rotation_1"] + columns["rotation_2"], np.array(density.scales)[:, None]
-        # densities of all angular momenta, by that of the highest temperature
+        # densities of all angular momenta, divided by the density at the highest temperature
         own = (scales / scales[-1]) ** (-0.5 * sum(facts.freedoms))
         own = own * np.exp(-rotation * (1.0 / scales - 1.0 / scales[-1]))
         flux, drawn = flux * own[plan.temperature.index(temperature)], drawn * own
@@ -163,7 +163,8 @@ def weights(columns, plan, facts, temperature):
 class Averages:
     """Means of integrands over flights, of all and with one replica left out.
 
-    ``means`` (1 + R, m): the first row is that of all; ``names`` (m,), in that order.  ``shifts``: factors (m,),
+    ``means`` (1 + R, m): the first row is from all flights; ``names`` (m,), in the same order.  ``shifts``: factors
+    (m,),
     one array for each systematic error; what they change adds to the standard errors.
     """
 
@@ -193,7 +194,7 @@ class Averages:
         ]
 
     def _guessed(self):
-        """Loss -> part that comes from flights that have not parted; of rotation, whose gain is then 0, the largest."""
+        """Loss -> fraction from unparted flights; for rotation, whose gain is then 0, the largest possible one."""
         parts = {}
         for name, part in self.unfinished.items():
             loss = LOSS.get(name)
@@ -218,8 +219,8 @@ class Averages:
 def _spread(values):
     """Standard error from values that leave out one replica each, nan for fewer than LEAST of them.
 
-    The factor (R - 1) / (R - 3) makes it that of Student's distribution with R - 1 degrees of freedom, which the value
-    by the jackknife's error has.
+    The factor (R - 1) / (R - 3) makes it the variance of Student's distribution with R - 1 degrees of freedom, which
+    value / jackknife error follows.
     """
     number = len(values)
     if number < LEAST:

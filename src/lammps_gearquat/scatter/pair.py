@@ -1,7 +1,7 @@
 """The two bodies of a deck, and one flight of them in LAMMPS.
 
-Lengths, times and energies are in the units of the deck, angular momenta in mass x length^2 / time.  Arrays
-of both bodies have the first one, that with the smaller ID, first.  Poses are rotations of the pose that
+Lengths, times and energies are in the units of the deck, angular momenta in mass x length^2 / time.  In arrays of
+both bodies, the body with the smaller ID comes first.  Poses are rotations of the pose that
 a body has in the deck.
 """
 
@@ -24,13 +24,13 @@ from ..trials.script import DeckError
 from .track import STEPS, Track
 
 #: a flight begins and ends so much farther apart than the bodies can feel each other: several first steps, for
-#: the derivatives of the start know nothing of a force that begins within its step
+#: the derivatives at the start do not include a force that sets in within the step
 MARGIN = 1.05
-#: what the first step may be: part of the way to the place of the encounter, and angle in radians
+#: limits of the first step: fraction of the distance to the encounter, and angle in radians
 FIRST_STEP, FIRST_TURN = 0.01, 0.05
 #: parts of the sum of all forces that count as rounding, where the force on a body should be zero
 ROUNDING = 1e-12
-#: keywords of the fix that say where bodies are or what acts on them, which is the command's to say
+#: keywords of the fix for positions of bodies and forces on them, which the command sets itself
 REFUSED_KEYWORDS = ("infile", "mol", "force", "torque")
 #: fixes that neither move atoms nor exert forces
 IDLE = re.compile(r"property/atom|store/.*|dt/reset")
@@ -53,18 +53,17 @@ class Start:
     momentum: np.ndarray
 
     def reversed(self):
-        """The same poses with all motion turned round."""
+        """The same poses with all velocities reversed."""
         return replace(self, velocity=-self.velocity, momentum=-self.momentum)
 
 
 @dataclass(frozen=True)
 class End(Start):
-    """The bodies after a flight, and what it was like.
+    """The bodies after a flight, and a summary of the flight.
 
-    ``time`` since the start; ``steps`` and ``repeats``, numbers of them; ``turnings``, how often the
-    radial velocity had changed its sign, and ``closest``, the smallest distance, see track.py;
-    ``fate``: "parted", or "unparted" after so many steps as allowed, or "lost", when LAMMPS ended the
-    flight with ``message``.
+    ``time`` since the start; numbers of ``steps`` and ``repeats``; ``turnings``, how often the
+    radial velocity had changed its sign, and ``closest``, the smallest distance, see track.py.
+    ``fate`` is "parted", or "unparted" after the allowed number of steps, or "lost" if LAMMPS ended the flight with ``message``.
     """
 
     time: float
@@ -77,7 +76,7 @@ class End(Start):
 
 
 def cross(a, b):
-    """Vector products (..., 3); NumPy's function takes several times as long for so few."""
+    """Vector products (..., 3); NumPy's function takes several times as long for so few vectors."""
     first, second = [1, 2, 0], [2, 0, 1]
     return a[..., first] * b[..., second] - a[..., second] * b[..., first]
 
@@ -85,7 +84,7 @@ def cross(a, b):
 def open_pair(path, variables=(), without=(), which=None, say=lambda text: None):
     """The Pair of a deck, to be used in a with statement.
 
-    ``variables``, ``without`` and ``which`` are those of ``trials.measure.Deck``.  Raises DeckError.
+    ``variables``, ``without`` and ``which`` as in ``trials.measure.Deck``.  Raises DeckError.
     """
     return Pair(path, variables, without, which, say)
 
@@ -93,9 +92,9 @@ def open_pair(path, variables=(), without=(), which=None, say=lambda text: None)
 class Pair:
     """Two rigid bodies of a deck in a LAMMPS of this process.
 
-    ``bodies``, a Bodies whose body frame is that of the deck; ``cutoff``, the largest distance at which two
-    sites act on each other; ``extent`` (2,), the largest distance of a site from its center; ``reach``, the
-    distance of the centers at which flights begin and end; ``units``, a row of UNITS, and ``style``, its name;
+    ``bodies``, a Bodies in the body frame of the deck; ``cutoff``, the largest distance at which two
+    sites act on each other; ``extent`` (2,), the largest distance of a site from its center; ``reach``, the distance
+    of the centers at which flights begin and end. ``units``, a row of UNITS, and ``style``, its name;
     ``freedoms`` (2,), of rotation; ``turning``, whether bodies have more than one site; ``charge`` (2,) if atoms
     have one, else None; ``text``, the commands that lead to the run.
     """
@@ -143,7 +142,7 @@ class Pair:
                 os.chdir(here)
 
     def _check(self, start):
-        """Refuse decks whose flights would not be those of two bodies alone; sets ``line``, their fix."""
+        """Refuse decks in which anything else acts on the two bodies; sets ``line``, their fix."""
         movers = [command.mover for command in start.commands if command.mover]
         if len(movers) != 1 or movers[0].style != "gear/quat":
             found = ", ".join(f"{line.id} {line.style}" for line in movers)
@@ -189,7 +188,7 @@ class Pair:
             )
 
     def _bodies(self):
-        """Sets ``bodies`` and what follows from them."""
+        """Set ``bodies`` and the members derived from them."""
         lammps = self.lammps
         labels = process.body_labels(lammps, [self.line])
         if (labels[:, 0] < 0).any():
@@ -222,7 +221,7 @@ class Pair:
 
     @property
     def identical(self):
-        """Whether both bodies are the same, so that the pair is that of a gas of one kind."""
+        """True if both bodies are the same, so that the pair represents a gas of one species."""
         mass, moments = self.bodies.mass, self.bodies.moments
         first, second = (sorted(self._kinds[self.bodies.of == k].tolist()) for k in range(2))
         same = np.allclose(mass[0], mass[1], rtol=1e-9) and np.allclose(moments[0], moments[1], rtol=1e-6)
@@ -299,7 +298,7 @@ class Pair:
         return np.einsum("nij,nj->ni", turns[self.bodies.of], vectors)
 
     def _place(self, state):
-        """Put the sites where a Start has them; returns angular velocities (2, 3) along the axes of space."""
+        """Place the sites as in a Start; returns angular velocities (2, 3) along the axes of space."""
         bodies, omega = self.bodies, np.zeros((2, 3))
         positions, velocities = (self.lammps.numpy.extract_atom(name) for name in "xv")
         positions[bodies.index] = state.center[bodies.of]
@@ -312,13 +311,13 @@ class Pair:
         return omega
 
     def _first_step(self, state, omega):
-        """Length of the first step, which the fix shortens if need be."""
+        """Length of the first step, which the fix shortens if necessary."""
         speed = np.linalg.norm(state.velocity[1] - state.velocity[0])
         turning = np.linalg.norm(omega, axis=1).max()
         return 1.0 / (speed / (FIRST_STEP * self.reach) + turning / FIRST_TURN)
 
     def fly(self, start, most_steps=1_000_000, dump=None):
-        """End of the flight from ``start``, which has parted when the bodies go apart beyond ``reach``.
+        """End of the flight from ``start``; it has parted when the bodies move apart beyond ``reach``.
 
         ``dump``: path of a file that gets all steps.
         """
@@ -367,7 +366,7 @@ class Pair:
         self.lammps.command(f"dump_modify {DUMP} sort id time yes units yes format float %.17g")
 
     def _end(self, positions, velocities, steps, track, parted):
-        """End of the flight at hand."""
+        """End of the present flight."""
         bodies = self.bodies
         x, v = positions[bodies.index], velocities[bodies.index]
         center, velocity = x, v

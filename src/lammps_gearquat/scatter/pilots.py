@@ -43,14 +43,15 @@ class Largest:
     pilots: int
 
     def highest(self):
-        """The largest part of any loss that is left out; None if one is not known."""
+        """The largest omitted fraction of any loss; None if one is unknown."""
         every = [part for one in self.left for part in one.values()]
         return None if None in every else max(every)
 
 
 @dataclass(frozen=True)
 class Cells:
-    """Where pilots are: ``edges`` (D + 1,) of the shells; ``b`` and ``energy`` (D, L, A); ``width``, of a level in the
+    """The grid of the pilots: ``edges`` (D + 1,) of the shells; ``b`` and ``energy`` (D, L, A); ``width``, of a level
+    in the
     logarithm of the energy, 0 for one energy; ``random`` (D L A, m), for what else is drawn."""
 
     edges: np.ndarray
@@ -113,13 +114,14 @@ def within_cutoff(facts, value):
 
 
 def _strata(random, shape):
-    """Numbers from 0 to 1, one in each of as many strata as the last axis is long, in random order."""
+    """Numbers from 0 to 1 in random order, one per stratum; the last axis gives the number of strata."""
     order = np.argsort(random.random(shape), axis=-1)
     return (order + random.random(shape)) / shape[-1]
 
 
 def nearest_thermal(plan, boltzmann, energy):
-    """kT (n,) of the rotation of pilots with energies (n,), of several temperatures that at which they are common."""
+    """kT (n,) of the rotation of pilots with energies (n,); of several temperatures, the one at which the energy is
+    common."""
     if plan.rotation is not None or plan.energy is not None:
         return np.full(len(energy), boltzmann * (plan.rotation or 0.0))
     scales = np.array(plan.scales(boltzmann))
@@ -144,7 +146,7 @@ def settle(plan, facts, places, columns, boltzmann, allowed, given=None):
 
 
 def _left_at(value, edges, left):
-    """Loss -> part beyond the impact parameter ``value``, None if it is not known; ``left`` (D + 1, 3) at the edges."""
+    """Loss -> part beyond the impact parameter ``value``, None if it is unknown; ``left`` (D + 1, 3) at the edges."""
     parts = [float(np.interp(value**2, edges**2, column)) for column in left.T]
     return {name: part if np.isfinite(part) else None for name, part in zip(LOSSES, parts)}
 
@@ -166,7 +168,7 @@ def _parted(columns):
 def losses(columns, scale, balanced, turning):
     """Array (n, 3): sizes of F_11 and F_22 and the squared gain of rotation, of each pilot; see integrals.py."""
     pairs = Collisions.of(columns, scale, balanced)
-    # what atoms gain is the error of a flight
+    # the energy gained by atoms is the error of a flight
     gain = pairs.gain**2 if turning else np.zeros(len(pairs.x))
     found = np.column_stack([np.abs(pairs.change(0)), np.abs(pairs.f22), gain])
     found[found < NOTHING] = 0.0
@@ -174,7 +176,7 @@ def losses(columns, scale, balanced, turning):
 
 
 def beyond(places, lost, scale, cutoff):
-    """Part (D + 1, 3) of every loss beyond each edge, with what the cutoff takes away; inf if that is not known.
+    """Part (D + 1, 3) of every loss beyond each edge, with the part removed by the cutoff; inf if it is unknown.
 
     ``lost`` (D, L, A, 3); ``scale``, kT.
     """
@@ -264,6 +266,6 @@ def _likeliest(weight, square, x, largest, tried):
 
 
 def rounded(value):
-    """Up to three digits: the same where the last digits of flights differ."""
+    """Up to three digits, so that differences in the last digits of flights do not matter."""
     unit = 10.0 ** (np.floor(np.log10(value)) - 2)
     return float(f"{np.ceil(value / unit) * unit:.3g}")

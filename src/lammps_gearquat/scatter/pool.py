@@ -24,7 +24,7 @@ _pair = None
 
 @dataclass(frozen=True)
 class Facts:
-    """What averages need to know of a Pair, whose members have the same names; lists instead of arrays.
+    """The data of a Pair that averages need, under the same names; lists instead of arrays.
 
     ``mass`` and ``freedoms`` (2,); ``moments`` (2, 3); ``name`` of the deck; ``text``, the commands of the deck.
     """
@@ -63,7 +63,7 @@ def facts_of(pair):
 
 
 def _answer(scene, asked, arguments, tell):
-    """What a Worker is asked: a function of the pair, which is opened by the first request, and of arguments."""
+    """A request to a Worker: a function of arguments and of the pair, which the first request opens."""
     global _pair
     if _pair is None:
         _pair = open_pair(**scene)
@@ -71,7 +71,7 @@ def _answer(scene, asked, arguments, tell):
 
 
 class Pool:
-    """Processes that fly the pair of a deck; use it in a with statement.
+    """Processes that simulate flights of the pair of a deck; use it in a with statement.
 
     ``scene`` holds the arguments of ``open_pair``; ``most_steps``, after which a flight is given up.
     ``facts`` are the Facts.  Raises DeckError for decks that cannot be used, and LammpsError.
@@ -102,7 +102,7 @@ class Pool:
         self._folder.cleanup()
 
     def _heed(self):
-        """End what a process is at work on after Ctrl-C: a block of flights can take long."""
+        """End the work of a process after Ctrl-C: a block of flights can take long."""
         if self._interrupted:
             raise LammpsError("interrupted")
 

@@ -1,4 +1,4 @@
-"""What a run prints while it lasts: a bar in a terminal, and lines in the log of a batch job."""
+"""Progress of a run: a bar in a terminal, and lines in the log of a batch job."""
 
 import sys
 import time
@@ -23,13 +23,13 @@ class Progress:
         self._bar.close()
 
     def begin(self, what, count, done=0):
-        """From now on ``count`` of ``what``, flights of some kind, are simulated; ``done`` of them are known."""
+        """Begin to simulate ``count`` of ``what``, flights of some kind; ``done`` of them are known."""
         self._what, self._done, self._total = what, done, count + done
         self._bar.set_description(what)
         self._bar.total = self._bar.n + count
 
     def advance(self, count):
-        """So many more have ended."""
+        """Count so many more finished flights."""
         self._done += count
         self._bar.update(count)
         if self._bar.disable and self._clock() - self._told >= EVERY:

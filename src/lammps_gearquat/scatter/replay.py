@@ -1,4 +1,4 @@
-"""One flight of a folder of results once more, written as a dump."""
+"""Repeat one flight of a folder of results, and write it as a dump."""
 
 from ..trials.script import DeckError
 from . import flights, store
@@ -7,9 +7,9 @@ from .pool import facts_of
 
 
 def replay(scene, out, number):
-    """Write flight ``number`` of the folder ``out`` as a dump into it; returns what to say.
+    """Write flight ``number`` of the folder ``out`` as a dump into it; returns a message.
 
-    ``scene``: arguments of ``open_pair``, those of the flights.  Raises DeckError if the folder has no such flight, or
+    ``scene``: arguments of ``open_pair``, as for the flights.  Raises DeckError if the folder has no such flight, or
     flights of another deck.
     """
     settings = store.read_settings(out)
@@ -31,7 +31,7 @@ def replay(scene, out, number):
 
 
 def _numbers(known):
-    """Words about the numbers that there are."""
+    """Words about the existing numbers."""
     if not known:
         return "it has none"
     return f"it has {len(known)} flights, with numbers from {known[0]} to {known[-1]}"

@@ -25,7 +25,7 @@ def quantity(name, estimate, style):
 
 
 def text(facts, plan, farthest, found):
-    """What the command prints."""
+    """The printed report of the command."""
     units, counts = UNITS[facts.style], found.counts
     lines = [f"{facts.name}, {_conditions(plan, facts.style)}: {counts['flights']} flights", ""]
     for answer in found.answers:
@@ -51,7 +51,7 @@ def text(facts, plan, farthest, found):
 
 
 def so_far(found, error):
-    """A line about Results when errors are looked at, ``error`` being asked for."""
+    """A line about Results when errors are checked against the requested ``error``."""
     worst = max(found.answers, key=lambda answer: answer.relative)
     errors = ", ".join(f"{name} {rounded(worst.estimates[name].relative, 2)}" for name in worst.aims)
     at = "" if len(found.answers) == 1 else f" at temperature {worst.temperature:g}"
@@ -98,7 +98,7 @@ def _distance(farthest, unit):
 
 
 def as_json(settings, found):
-    """Everything that is known, ready for JSON; not a number is None."""
+    """All results, ready for JSON; not a number is None."""
     style = settings["pair"]["style"]
     answers = [_answer_as_json(answer, style) for answer in found.answers]
     errors = {words: {"largest": values[0], "median": values[1]} for words, values in found.errors.items()}

@@ -1,4 +1,4 @@
-"""All that flights say, as Estimates, counts and how the estimates have converged."""
+"""The results of flights: Estimates, counts, and the convergence of the estimates."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from ..trials.script import DeckError
 from . import gas
 from .integrals import Averages, estimates, integrands
 
-#: what --error is an error of, by the kind of plan
+#: the quantities that --error refers to, by the kind of plan
 AIMS = {"temperature": ("Omega(1,1)", "Omega(2,2)"), "energy": ("Q(1)", "Q(2)")}
 #: flights that are named at most
 NAMED = 10
@@ -21,7 +21,7 @@ ERRORS = {"error_energy": "energy", "error_momentum": "momentum", "error_angular
 
 @dataclass(frozen=True)
 class Answer:
-    """What flights say at one ``temperature``, None for one energy.
+    """Results of flights at one ``temperature``, None for one energy.
 
     ``estimates``: name -> Estimate; ``aims``, names of those that --error is about; ``correlations`` (k, k) of
     the errors of ``correlated`` (k,); ``unfinished``, the largest part of an aim that comes from flights that have not
@@ -58,13 +58,13 @@ class Results:
 
     @property
     def guessed(self):
-        """The largest part of any aim that comes from flights that have not parted."""
+        """The largest fraction of any aim that comes from unparted flights."""
         return max(answer.unfinished for answer in self.answers)
 
 
 def results(columns, plan, facts, sigma=None, left=None):
-    """Results of the columns of flights; ``sigma``, the diameter of the rigid spheres to divide by; ``left``, that
-    of ``pilots.Largest``.  Raises DeckError if no flight has parted, or if one has not kept its
+    """Results of the columns of flights; ``sigma``, the diameter of the rigid spheres to divide by; ``left`` as in
+    ``pilots.Largest``.  Raises DeckError if no flight has parted, or if one has not kept its
     energy."""
     fate = columns["fate"]
     message = next(iter(columns["message"][fate == "lost"].tolist()), "")
@@ -94,7 +94,7 @@ def _answer(columns, plan, facts, temperature, sigma, left):
 
 
 def counts(columns):
-    """Numbers of flights, of those with a repeated step, of orbiting ones, and of those that have not parted."""
+    """Numbers of all flights, of flights with a repeated step, of orbiting and of unparted ones."""
     fate = columns["fate"]
     return {
         "flights": len(fate),

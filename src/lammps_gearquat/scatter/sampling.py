@@ -27,10 +27,10 @@ BITS = 30
 class Plan:
     """The distribution of the flights, in units of the deck.
 
-    ``seed``, a tuple of numbers; ``temperature``, a rising tuple of temperatures of translation, or None and one
-    ``energy`` of it; ``rotation``, its temperature, 0 for none, or None for the temperature of translation;
-    ``largest``, the largest impact parameter; ``s0``, ``s1`` and ``power``, which density.py explains.  If both s0
-    and s1 are 0, impact parameters are uniform over the whole area.
+    ``seed``, a tuple of numbers; ``temperature``, an ascending tuple of temperatures of translation, or None with one
+    ``energy`` of translation. ``rotation``, the temperature of rotation, 0 for none, or None for the temperature of
+    translation.  ``largest``, the largest impact parameter; ``s0``, ``s1`` and ``power``, which density.py explains.
+    If both s0 and s1 are 0, impact parameters are uniform over the whole area.
     """
 
     seed: tuple
@@ -65,11 +65,11 @@ class Plan:
         return density_of(self.scales(boltzmann), single, s0, self.s1, self.power, self.largest)
 
     def mixes_rotation(self, freedoms):
-        """Whether rotation has that temperature of several with which a flight is drawn."""
+        """True if rotation has the temperature, one of several, with which a flight is drawn."""
         return self.energy is None and self.rotation is None and len(self.temperature) > 1 and any(freedoms)
 
     def balanced(self, freedoms):
-        """Whether rotation, if there is any, has the temperature of translation, so that detailed balance holds."""
+        """True if rotation, if there is any, has the temperature of translation, so that detailed balance holds."""
         return self.energy is None and (self.rotation is None or not any(freedoms))
 
     def drawn(self, points, boltzmann):

@@ -1,7 +1,7 @@
-"""The folder of results: settings.json, what is flown; flights.csv, what has been flown; and parts joined.
+"""The folder of results: settings.json, the plan; flights.csv, the finished flights; and joined parts.
 
-A run that was ended goes on after the last whole line, and lines are written in the order of the flights, so
-the file is the same as that of a run that was not.
+An interrupted run continues after the last whole line.  Lines are written in the order of the flights, so an
+interruption does not change the file.
 """
 
 import csv
@@ -16,7 +16,7 @@ from .pilots import Largest
 from .pool import Facts
 from .sampling import Plan
 
-#: of the way in which flights are drawn: those of releases before 0.4 have none
+#: version of the way in which flights are drawn; settings of releases before 0.4 have none
 SAMPLING = 2
 #: gaps between flights that are named at most
 NAMED = 10
@@ -24,7 +24,7 @@ SETTINGS, FLIGHTS, RESULTS = "settings.json", "flights.csv", "results.json"
 
 
 def settings(facts, plan, largest, most_steps):
-    """What determines every flight, ready for JSON."""
+    """Settings that determine every flight, ready for JSON."""
     found = {"sampling": SAMPLING, "pair": pair_of(facts), "plan": asdict(plan), "largest": asdict(largest)}
     return json.loads(json.dumps(found | {"most_steps": most_steps}))
 
@@ -43,8 +43,8 @@ def facts_of(settings):
 
 
 def read_settings(folder):
-    """Settings of a folder of results.  Raises DeckError if it has none, or those of a release whose flights
-    have another density."""
+    """Settings of a folder of results.  Raises DeckError if it has none, or if they come from a release whose
+    flights have another density."""
     path = Path(folder) / SETTINGS
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
@@ -60,21 +60,21 @@ def read_settings(folder):
 
 
 def write_json(path, value):
-    """Written whole or not at all."""
+    """Write the whole file or nothing."""
     draft = path.with_suffix(".tmp")
     draft.write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     draft.replace(path)
 
 
 def begin(folder, wanted):
-    """Make ``folder`` that of these settings.  Raises DeckError if it has flights of others."""
+    """Write these settings to ``folder``.  Raises DeckError if it has flights of other settings."""
     folder.mkdir(parents=True, exist_ok=True)
     if (folder / SETTINGS).exists():
         _same(folder, read_settings(folder), wanted)
     write_json(folder / SETTINGS, wanted)
 
 
-#: what the settings that may differ are to the user, by the names in settings.json
+#: descriptions for the user of settings that may differ, by their names in settings.json
 WORDS = {
     "pair text": "the commands of the deck",
     "pair name": "the name of the deck",
@@ -85,12 +85,12 @@ WORDS = {
     "plan largest": "the largest impact parameter",
     "most_steps": "--steps",
 }
-#: what pilot flights find, which differs if anything else does
+#: results of pilot flights, which differ if anything else does
 FOUND = ("plan s0", "plan s1", "plan power")
 
 
 def _differing(known, wanted):
-    """Words for what differs between settings, "" for nothing."""
+    """Words for the differences between settings, "" for none."""
     names = [
         f"{part} {name}" if isinstance(wanted[part], dict) else part
         for part in wanted
@@ -105,14 +105,14 @@ def _differing(known, wanted):
 
 
 def _same(folder, known, wanted, required="another --out is required"):
-    """Raise DeckError if settings differ, naming what does."""
+    """Raise DeckError if settings differ, and name the differences."""
     differing = _differing(known, wanted)
     if differing:
         raise DeckError(f"{folder} has flights of other settings ({differing}): {required}")
 
 
 def same_pair(folder, known, facts):
-    """Raise DeckError if the flights of ``folder``, with the settings ``known``, are not those of the Facts."""
+    """Raise DeckError if the flights of ``folder``, with the settings ``known``, do not match the Facts."""
     _same(folder, known, {**known, "pair": pair_of(facts)}, "the same deck is required")
 
 
@@ -122,7 +122,7 @@ def _get(settings, part, name):
 
 
 def read_lines(folder):
-    """Whole lines of flights.csv, without its header; what is after the last whole line is cut off."""
+    """Whole lines of flights.csv, without its header; an incomplete last line is cut off."""
     path = Path(folder) / FLIGHTS
     if not path.exists():
         return []
@@ -132,7 +132,7 @@ def read_lines(folder):
         path.write_bytes(whole)
     lines = whole.decode("utf-8").splitlines()
     if lines and lines[0] != ",".join(flights.HEADER):
-        raise DeckError(f"{path}: its columns are not those of gearquat scatter: another --out is required")
+        raise DeckError(f"{path}: its columns do not match gearquat scatter: another --out is required")
     return lines[1:]
 
 
@@ -190,7 +190,8 @@ def merge(folders, out):
             again += number in lines
             if lines.setdefault(number, line) != line:
                 raise DeckError(
-                    f"{folder}: flight {number} differs from that in another part: parts of one run are required"
+                    f"{folder}: flight {number} differs from the same flight in another part:"
+                    " parts of one run are required"
                 )
     begin(out, wanted)
     ordered = [lines[number] for number in sorted(lines)]

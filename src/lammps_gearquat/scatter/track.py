@@ -1,4 +1,4 @@
-"""The distance of two bodies during a flight, from looks at it every few steps."""
+"""The distance of two bodies during a flight, sampled every few steps."""
 
 import numpy as np
 from scipy.interpolate import BPoly
@@ -14,7 +14,7 @@ _BASIS = BPoly.from_derivatives([0.0, 1.0], np.eye(6).reshape(2, 3, 6))(_BETWEEN
 class Track:
     """``turnings``, how often the radial velocity has changed its sign, and ``closest``, the smallest distance.
 
-    Between the two looks around a turning point the distance is that of the polynomial of fifth order through
+    Between the two samples around a turning point, the distance follows the fifth-order polynomial through
     positions, velocities and accelerations.
     """
 
@@ -28,7 +28,7 @@ class Track:
         return float(np.sqrt(self._square))
 
     def look(self, time, away, velocity, acceleration):
-        """See the second body at ``away`` from the first, with its relative velocity and acceleration, (3,) each."""
+        """Record the second body at ``away`` from the first, with its relative velocity and acceleration, (3,) each."""
         radial, now = away @ velocity, np.array([away, velocity, acceleration])
         self._square = min(self._square, away @ away)
         if radial * self._sign < 0.0:
@@ -38,7 +38,7 @@ class Track:
         self._time, self._before = time, now
 
     def _between(self, step, now):
-        """Smallest square of the distance between the last look and ``now``, after a time ``step``."""
+        """Smallest square of the distance between the last sample and ``now``, after a time ``step``."""
         scales = np.array([1.0, step, step * step])[:, None]
         path = _BASIS @ np.concatenate([scales * self._before, scales * now])
         squares = np.einsum("ij,ij->i", path, path)

@@ -1,9 +1,8 @@
 """The state of the atoms after a run, so that trials need not repeat the run.
 
-``save`` and ``restore`` are called by every rank, in a process that runs LAMMPS.  What is kept is
-what a run changes in most scenes: the time step, the box, and the arrays of ATOM_DATA to their last bit.
-What else a run may change, such as the variables of a thermostat, is not kept; ``Deck`` compares the
-first steps after a restored state with those of the deck itself.
+``save`` and ``restore`` are called by every rank, in a process that runs LAMMPS.  They keep the time step, the box,
+and the arrays of ATOM_DATA to the last bit: most runs change nothing else.  Other state, such as the variables of a
+thermostat, is not kept; ``Deck`` compares the first steps after a restored state with the deck's own steps.
 """
 
 import ctypes
@@ -35,8 +34,8 @@ def save(lammps, prefix):
 def restore(lammps, prefix):
     """Put all atoms back into the state that was saved with ``prefix``.
 
-    Forces, neighbor lists and what fixes know of their bodies follow from it: one ``run 0`` passes
-    over the state before it is restored for good.  Raises DeckError if the atoms are others.
+    Forces, neighbor lists and the bodies of fixes follow from it: one ``run 0`` sets them up, then the state is
+    restored once more.  Raises DeckError if the atoms differ.
     """
     parts = [np.load(path) for path in sorted(glob.glob(f"{glob.escape(str(prefix))}.*.npz"))]
     names = set(parts[0]) - {"box", "step"}

@@ -1,14 +1,14 @@
-"""What an error costs in the scene of a deck: short trials over steps and orders.
+"""The cost of an error in the simulation of a deck: short trials over steps and orders.
 
 1. A reference: fix gear/quat of high order at finer and finer steps, until two of them agree far
-   better than required, and a second one of the other formulation that confirms it.  Where these two
-   part, nothing can be said about smaller errors; the time measured is cut so that the smallest
-   error can be judged, if that leaves a tenth of it.
+   better than required, and a second one of the other formulation that confirms it.  Smaller errors than the
+   difference of these two cannot be judged; the time of the trials is cut until the smallest error can be judged, but
+   not below a tenth.
 2. Every method from coarse to fine steps, to the same time.
-3. Those that matter at the steps that interpolation promises: what is recommended has been tried.
-4. Those again and again, interleaved, for their wall time: the smallest counts.
-5. What is recommended for as long as the budget allows, for the drift of its energy.  Where that is beyond
-   its bound, the next cheapest is tried.
+3. The relevant methods at interpolated steps, so that every recommended step has been tried.
+4. The same trials several times, interleaved, for their wall time: the smallest counts.
+5. The recommended trial for as long as the budget allows, for its energy drift.  If the drift is above
+   its bound, the next cheapest trial follows.
 
 Where trajectories diverge before the end of the deck's run, ``sampling`` takes the place of all but the first.
 """
@@ -51,9 +51,9 @@ WORTHWHILE = 1.05
 
 @dataclass(frozen=True)
 class Row:
-    """What one error costs: ``own``, Price with the deck's fix, and ``best``, that of fix gear/quat.
+    """The cost of one error: ``own``, Price with the deck's fix, and ``best``, Price with fix gear/quat.
 
-    Either is None if the error cannot be had, or not be judged.
+    Either is None if the error cannot be reached or cannot be judged.
     """
 
     error: float
@@ -62,14 +62,14 @@ class Row:
 
     @property
     def keep(self):
-        """Whether the deck's own fix is as fast as any."""
+        """True if the deck's own fix is as fast as any."""
         if self.own is None or self.own.kind == "extrapolated":
             return False
         return self.best is None or self.own.seconds < WORTHWHILE * self.best.seconds
 
     @property
     def choice(self):
-        """The Price of what is recommended, or None."""
+        """The recommended Price, or None."""
         return self.own if self.keep else self.best
 
     @property
@@ -82,11 +82,10 @@ class Row:
 class Costs:
     """The answer; times, lengths in units of the deck.
 
-    ``end``, the time of the trials; ``doubt``, how far the two best trials are apart there;
-    ``trials``, list of (Trial, errors) with one error for each of NORMS; ``norm``, the index of the
-    one that was chosen; ``rows``, list of Row; ``before``, seconds that following the deck took;
-    ``drifts``, dictionary (keywords, step), as in Row.recommended, -> drift.Drift, also of what is not recommended
-    for its sake; ``bound``, what a drift may be.
+    ``end``, the time of the trials; ``doubt``, the difference of the two best trials there.  ``trials``, list of
+    (Trial, errors) with one error for each of NORMS; ``norm``, the index of the chosen norm; ``rows``, list of Row;
+    ``before``, seconds spent following the deck. ``drifts``, dictionary (keywords, step), as in Row.recommended, ->
+    drift.Drift, also of steps rejected for their drift; ``bound``, the largest acceptable drift.
     """
 
     end: float
@@ -139,7 +138,7 @@ class Inquiry:
         self.before, self.truth = budget.spent(), None
 
     def attempt(self, keywords, end, steps, samples=1):
-        """Trial, or None where LAMMPS gave up (a step that is too large) or the budget ends."""
+        """Trial, or None if LAMMPS failed (a step that is too large) or the budget ended."""
         self.budget.say(f"{named(keywords)}, step {rounded(end / steps)}")
         timeout = min(PATIENCE + 3 * self.expected(keywords, steps), self.budget.left())
         begin = clock.monotonic()
@@ -159,16 +158,16 @@ class Inquiry:
         return self.overhead + steps * pace
 
     def affords(self, keywords, steps, reserve=0.0, runs=1.0):
-        """Whether so many ``runs`` of this length leave ``reserve`` seconds of the budget."""
+        """True if so many ``runs`` of this length leave ``reserve`` seconds of the budget."""
         return runs * self.expected(keywords, steps) < self.budget.left() - reserve
 
     def enough(self):
-        """The seconds that a budget should have, as far as trials tell, as text."""
+        """The recommended budget in seconds, estimated from the trials, as text."""
         trial = self.expected(None, SAMPLES) if self.pace else self.budget.spent() - self.before
         return rounded(2 * self.before + RUNS_IN_BUDGET * trial, 2)
 
     def refusal(self, what, keywords):
-        """The DeckError where a trial that is necessary did not come to its end."""
+        """The DeckError for a necessary trial that did not finish."""
         reason = explained(self.failures[keywords], self.deck, self.deck.dt)
         if self.budget.left() > 0 or not reason.startswith(NOT_FINISHED):
             return DeckError(f"{what}: {reason}")
@@ -180,7 +179,7 @@ class Inquiry:
 
     # --- 0. how long ----------------------------------------------------------------------------------
     def probe(self):
-        """Find out what a step costs with the deck's own fix, from a run of a few tenths of a second."""
+        """Measure the cost of a step with the deck's own fix, from a run of a few tenths of a second."""
         steps = PROBE_STEPS
         while True:
             trial = self.attempt(None, steps * self.deck.dt, steps)
@@ -193,7 +192,7 @@ class Inquiry:
             steps = min(4 * steps, self.deck.start.steps)
 
     def check(self, tries):
-        """Raise DeckError for keywords that the fix refuses: a step so short fails for no other reason."""
+        """Raise DeckError for keywords that the fix refuses: so short a step fails for no other reason."""
         for keywords in tries:
             if self.attempt(keywords, 1e-3 * self.deck.dt, 1) is None:
                 raise self.refusal(f"--try '{keywords}'", keywords)
@@ -214,7 +213,7 @@ class Inquiry:
     def find_reference(self, end, target, largest=math.inf):
         """(accurate trial, trial with CONFIRMATION), as fine as the budget allows.
 
-        Of the former's halvings of the step it is the one that changes least.  The latter is None where trajectories of
+        The first is the halving of the step that changes the result least.  The second is None where trajectories of
         many bodies diverge, so that not even an error of ``largest`` can be judged at the end of the deck's run.
         """
         many = largest < math.inf
@@ -256,7 +255,7 @@ class Inquiry:
         return self.errors(*frames)[self.norm]
 
     def rounding(self, trial):
-        """What rounding of the positions alone can make of the error."""
+        """The error that rounding of the positions alone can cause."""
         scale = np.abs(trial.center).max() if self.norm < 2 else 1.0
         return float(np.finfo(float).eps * scale)
 
@@ -268,7 +267,7 @@ class Inquiry:
 
     # --- 2. the methods -------------------------------------------------------------------------------
     def add(self, costs, keywords, steps):
-        """A trial into ``costs``; returns the largest error that it may have, None where it did not end."""
+        """Add a trial to ``costs``; returns its largest possible error, or None if it did not finish."""
         trial = self.attempt(keywords, costs.end, steps)
         if trial is None:
             return None
@@ -309,7 +308,7 @@ class Inquiry:
         return {steps: error for steps, error in rungs.items() if error is not None}
 
     def climb_all(self, costs, errors, tries):
-        """Trials of all methods into ``costs``."""
+        """Add trials of all methods to ``costs``."""
         tried = [None, *dict.fromkeys([*filter(self.deck.takes, methods()), *tries])]
         middle = math.log(errors[0] * errors[-1]) / 2
         own_steps = gear_steps = max(round(costs.end / self.deck.dt), FEWEST_STEPS)
@@ -329,11 +328,11 @@ class Inquiry:
 
     # --- 3. the steps between -------------------------------------------------------------------------
     def refine(self, costs, errors):
-        """Further trials into ``costs``, at the steps that interpolation promises, as scripts have them."""
+        """Add further trials to ``costs``, at interpolated steps, rounded as in scripts."""
         reserve, methods = (SHARE_TIMING / 2 + drift.SHARE) * self.budget.seconds, list(costs.points())
         for error in ATTEMPTS * list(errors):
             for keywords, price in evaluate.candidates(costs.points(), error).items():
-                # not finer than what is recommended if this trial holds the error
+                # no finer than the step recommended if this trial meets the error
                 steps = int(costs.end / evaluate.usable_step(price.aim))
                 loose = price.kind == "at most" and price.aim > evaluate.CLOSE * price.dt
                 if loose and steps and self.affords(keywords, steps, reserve):
@@ -355,7 +354,7 @@ class Inquiry:
 
     # --- 5. the drift -----------------------------------------------------------------------------------
     def choose(self, costs, errors):
-        """Rows of ``costs`` whose recommended steps were run for the drift of their energy, and not refused for it.
+        """Rows of ``costs`` whose recommended steps were tested for energy drift and not rejected.
 
         Short runs come first, and each refusal makes another choice.  Then what is left of the budget is shared by long runs.
         """
@@ -379,8 +378,8 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
 
     ``budget``, a Budget that began before the deck was opened; ``errors`` in units of the deck
     (radians for orientations; none: DECADES of the size of the bodies); ``time``, of the trials;
-    ``tries``, keywords of fix gear/quat to try beside ``methods``; ``bound``, what the energy of a recommended step
-    may drift by, in kT per degree of freedom and ns.  Raises DeckError where nothing can
+    ``tries``, keywords of fix gear/quat to try beside ``methods``; ``bound``, the largest energy drift of a
+    recommended step, in kT per degree of freedom and ns.  Raises DeckError where nothing can
     be measured.
     """
     unit = evaluate.decade(deck.size) if norm < 2 else 1.0
@@ -423,7 +422,7 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
 
 
 def warnings_of(trials):
-    """What LAMMPS said in trials: list of notes, each once, with the methods it belongs to."""
+    """LAMMPS' warnings in trials: list of notes, each once, with the methods that caused it."""
     methods_of = {}
     for trial in trials:
         for line in trial.warnings:
@@ -436,7 +435,7 @@ def warnings_of(trials):
 
 
 def worth_timing(costs, errors):
-    """Trials that the prices of ``errors`` are those of, or are extrapolated from."""
+    """Trials from which the prices of ``errors`` are taken or extrapolated."""
     chosen, points = {}, costs.points()
     for error in errors:
         for keywords, price in evaluate.candidates(points, error).items():
@@ -447,7 +446,7 @@ def worth_timing(costs, errors):
 
 
 def rows_of(costs, errors):
-    """One Row for each error: what it costs with the deck's own method, and at best.
+    """One Row for each error: its cost with the deck's own method, and at best.
 
     A smaller error that was measured as cheaper serves a larger one as well: times are noisy.
     """

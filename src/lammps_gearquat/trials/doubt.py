@@ -1,4 +1,4 @@
-"""Until what time the reference is known well enough to judge an error, and what follows where that is too early."""
+"""The time until which the reference is accurate enough to judge an error, and notes where it is too short."""
 
 import math
 
@@ -18,7 +18,7 @@ def judged_at(doubt, error):
 
 
 def known_until(time, doubt, errors):
-    """Until what time errors that cannot be judged at the end could be: list of notes."""
+    """Times until which errors that cannot be judged at the end can be judged: list of notes."""
     notes = []
     for error in errors:
         known = judged_at(doubt, error)
@@ -50,7 +50,7 @@ def cut_to(time, doubt, errors):
 
 
 def diverging(time, doubt, end, error):
-    """Whether the trajectory cannot be followed to ``end``.
+    """True if the trajectory cannot be followed to ``end``.
 
     That is so if two trials of high accuracy that differ by ``doubt`` (S,) at the times (S,) will differ by
     too much for the largest ``error`` of interest then, at the latest.  Later than the last time the difference grows by
@@ -63,8 +63,8 @@ def diverging(time, doubt, end, error):
 
 
 def chaotic(time, difference, end, error):
-    """Whether a ``difference`` (S,) of two trials at the times (S,) would be larger than ``error`` at ``end`` if it grew
-    exponentially, as that of many bodies does, at the rate of the second half.
+    """True if a ``difference`` (S,) of two trials at the times (S,) would be larger than ``error`` at ``end`` if it
+    grew exponentially, as for many bodies, at the rate of the second half.
     """
     largest = np.maximum.accumulate(difference)
     half = len(time) // 2

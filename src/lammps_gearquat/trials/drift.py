@@ -1,4 +1,4 @@
-"""How the energy drifts at a step, and whether translation and rotation have the same temperature."""
+"""Energy drift at a step, and the difference between the temperatures of translation and rotation."""
 
 import math
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from . import BOUND, evaluate
 from .explain import explained, left_the_box
 from .worker import NOT_FINISHED
 
-#: the part of the temperature by which those of translation and rotation may differ
+#: allowed difference of the temperatures of translation and rotation, relative to the temperature
 BALANCE = 0.01
 #: the part of the budget that is kept for these runs beside trials of an error
 SHARE = 0.15
@@ -54,27 +54,27 @@ class Drift:
 
     @property
     def drifts(self):
-        """Whether the drift is beyond the bound for sure."""
+        """True if the drift certainly exceeds the bound."""
         return abs(self.rate) - SURE * self.error > self.bound
 
     @property
     def unbalanced(self):
-        """Whether the temperatures of translation and rotation differ by more than BALANCE of them for sure."""
+        """True if the temperatures of translation and rotation certainly differ by more than the fraction BALANCE."""
         return abs(self.difference.value) - SURE * self.difference.error > BALANCE * self.temperature
 
     @property
     def fails(self):
-        """Whether a run ended with an error that the step is to be blamed for."""
+        """True if a run ended with an error caused by the step."""
         return bool(self.failure) and not self.gone
 
     @property
     def refused(self):
-        """Whether the step is not to be recommended."""
+        """True if the step must not be recommended."""
         return self.drifts or self.unbalanced or self.fails
 
     @property
     def holds(self):
-        """Whether the drift is within the bound for sure, and nothing else speaks against the step."""
+        """True if the drift is certainly within the bound, and nothing else rules out the step."""
         return abs(self.rate) + SURE * self.error < self.bound and not self.refused
 
 
@@ -135,7 +135,8 @@ def run(inquiry, keywords, dt, steps, timeout, bound=BOUND, balance=False):
 
 
 def of_step(inquiry, keywords, dt, end, seconds, bound=BOUND):
-    """Drift at a step, from a run that takes so many seconds at most, up to ``longest``, or longer if that does not tell.
+    """Drift at a step, from a run of at most so many seconds, up to ``longest``, or longer if the drift is not
+    resolved.
 
     Where that ends with an error a run to ``end``, for which the step is recommended, is made as well.
     """

@@ -1,4 +1,4 @@
-"""Errors of bodies, what an error costs, how the energy drifts, and how a difference grows.  Arrays in, numbers out."""
+"""Errors of bodies, cost of an error, energy drift, and growth of a difference.  Arrays in, numbers out."""
 
 import math
 from dataclasses import dataclass
@@ -30,8 +30,8 @@ def parting_time(time, distance, threshold):
 class Point:
     """A trial as a point of the work-precision diagram.
 
-    ``evaluations`` of the forces and ``seconds`` are those of its steps; ``start_evaluations`` and
-    ``start_seconds`` those of what comes before the first step.
+    ``evaluations`` of the forces and ``seconds`` count its steps; ``start_evaluations`` and ``start_seconds`` count
+    the start before the first step.
     """
 
     method: str
@@ -45,7 +45,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Price(Point):
-    """What an error costs with one method, and how it is known.
+    """The cost of an error with one method, and how it was found.
 
     ``kind``: "measured" in a trial, "at most" (of a trial whose next coarser one is far away or missing), or
     "extrapolated" (no trial was as good as required).  ``aim`` is the step, not shorter than ``dt``,
@@ -56,7 +56,7 @@ class Price(Point):
     aim: float = 0.0
 
 
-#: steeper than this, the error is not that of an order but of a limit of stability
+#: steeper than this, a stability limit rather than the order determines the error
 CLIFF = 16.0
 #: a step is close to another one that is larger by less than this factor
 CLOSE = 1.1
@@ -71,9 +71,8 @@ def usable_step(dt):
 def price(points, error, extrapolate=False):
     """Price of ``error`` from the Points of one method, or None if it is not reached.
 
-    It is that of the coarsest trial below which no finer one is worse than required, up to where
-    rounding begins.  With ``extrapolate`` the line through the two finest trials is continued if none is
-    good enough.
+    It is the price of the coarsest trial for which this and all finer trials meet the error, up to where rounding
+    begins.  With ``extrapolate`` the line through the two finest trials is continued if none is good enough.
     """
     points = sorted(points, key=lambda p: p.dt)
     last = next((i for i, point in enumerate(points) if point.error <= error), None)
@@ -147,7 +146,8 @@ def trend(time, values):
 
 @cache
 def _lines(n):
-    """What a line through n samples takes for each of WALKS: (q^T L^-1, L^-1, r^-1, logarithm of determinants).
+    """Factors for fitting a line through n samples, for each of WALKS: (q^T L^-1, L^-1, r^-1, logarithm of
+    determinants).
 
     L L^T is the covariance of the noise, and q r = L^-1 (1, t) the factors of the equations for the line.
     """
@@ -176,8 +176,8 @@ def _weighted_line(values, project, whiten, inverse, determinants):
 class Growth:
     """A difference that grows as level · t^power · exp(rate t) from ``begin`` to ``end``.
 
-    ``rate`` with its standard error (jackknife over ten blocks of time); the power is that of the
-    sum of local errors which a difference is before it grows by itself.
+    ``rate`` with its standard error (jackknife over ten blocks of time); the power describes the sum of local errors,
+    before the difference grows by itself.
     """
 
     rate: float
@@ -213,7 +213,7 @@ ROUNDING = 1e-13
 def growth(time, difference, saturation, floor=0.0):
     """(Growth, "") of where ``difference`` (n,) is exponential, or (None, why it is not).
 
-    What is fitted is the logarithm of the running maximum, between ``floor`` and ``saturation``.
+    The fit is to the logarithm of the running maximum, between ``floor`` and ``saturation``.
     """
     largest = np.maximum.accumulate(np.nan_to_num(difference, nan=np.inf))
     kept = (largest > floor) & (largest < saturation) & (time > 0)

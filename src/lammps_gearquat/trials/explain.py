@@ -1,4 +1,4 @@
-"""Causes of LAMMPS' errors that end a trial, and what to write then."""
+"""Causes of LAMMPS' errors that end a trial, and the message for each."""
 
 import re
 
@@ -29,7 +29,7 @@ def explained(message, deck, dt, reached=None):
             f" box follows them, or end {end} (LAMMPS: {said})"
         )
     if dt > deck.dt:
-        remedy = f"a step of {deck.dt:g}, that of the script, or shorter is required"
+        remedy = f"a step of {deck.dt:g} (as in the script) or shorter is required"
     else:
         remedy = f"lmp -in {deck.path.name} has to reach the time first, with a shorter timestep or from other positions"
     return (
@@ -39,12 +39,12 @@ def explained(message, deck, dt, reached=None):
 
 
 def left_the_box(message, deck):
-    """Whether an error means that bodies left a box whose boundary is fixed, whatever the step is."""
+    """True if an error means that bodies left a box with fixed boundaries, so that no step would help."""
     return bool(_GONE.search(message) and _fixed_boundary(deck))
 
 
 def _fixed_boundary(deck):
-    """The command of the deck that makes a boundary fixed, or ""."""
+    """The deck's command that makes a boundary fixed, or ""."""
     commands = [command.text.split() for command in deck.start.commands]
     last = next((words for words in reversed(commands) if words[:1] == ["boundary"]), [])
     return " ".join(last) if any("f" in word for word in last[1:]) else ""

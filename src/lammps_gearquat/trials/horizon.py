@@ -1,4 +1,4 @@
-"""Until what time a trajectory can be trusted: one scene at two accuracies, side by side."""
+"""The time until which a trajectory can be trusted: one scene at two accuracies, side by side."""
 
 from dataclasses import dataclass, field
 
@@ -25,8 +25,8 @@ class Horizon:
     """Two trials of one scene, B bodies, S samples; units of the deck.
 
     ``largest`` and ``rms``, distances of the centers of mass of bodies, and ``angle``, the largest
-    angle between orientations (radians), all (S,); ``parting``, list of (threshold, time), infinite
-    if not reached; ``growth``, an evaluate.Growth or None, and then ``no_growth`` says why.
+    angle between orientations (radians), all (S,).  ``parting``, list of (threshold, time), infinite if not reached;
+    ``growth``, an evaluate.Growth, or None with the reason in ``no_growth``.
     """
 
     trials: tuple
@@ -48,7 +48,7 @@ def measure(deck, a=None, b=None, steps=(None, None), time=None, every=None, thr
     """Horizon of a Deck.
 
     ``a`` and ``b`` are changes to the keywords of the deck's line in terms of fix gear/quat; None:
-    the deck as it is, and what is accurate there.  ``steps`` are their time steps; None: the deck's
+    the deck as it is, and accurate keywords.  ``steps`` are their time steps; None: the deck's
     own, and half of that where nothing else differs.  ``every`` is the time between samples.
     Raises DeckError if the steps of the deck as it is follow the error.
     """
@@ -122,14 +122,14 @@ class _Pair:
 
 
 def affordable(deck, dt_a, dt_b):
-    """The time of the deck's run, or what two runs within BUDGET reach."""
+    """The time of the deck's run, or the time that two runs reach within BUDGET."""
     inquiry = Inquiry(deck, Budget(BUDGET))
     inquiry.probe()
     return min(deck.end, BUDGET / (inquiry.pace[None] / dt_a + inquiry.pace[None] / dt_b))
 
 
 def sampling(time, every, dt):
-    """(number of samples, time between them), the latter a multiple of ``dt``."""
+    """(number of samples, time between them); this time is a multiple of ``dt``."""
     stride = max(round((every or time / SAMPLES) / dt), 1)
     segments = int(time / (stride * dt) * (1 + 1e-9))
     if segments < 1:

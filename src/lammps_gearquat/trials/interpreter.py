@@ -1,8 +1,8 @@
 """The flow of commands of an input script, followed up to the run that moves its rigid bodies.
 
-Only what decides which command comes next is done here: include, jump, label, next, if, run.
+Only commands that decide which command comes next are executed here: include, jump, label, next, if, run.
 Everything else, variables among it, is LAMMPS' own: every command is passed on to ``lammps`` with its
-variables substituted.  What only writes or prints is left out, but for the restart and data files that a
+variables substituted.  Commands that only write or print are left out, except for restart and data files that the
 deck reads again.  The commands passed on are kept, so that they can be replayed without any control flow.
 """
 
@@ -55,10 +55,10 @@ class Command:
 class LeadIn:
     """The state of a deck at the run that moves its bodies.
 
-    ``commands`` lead there; those with a ``mover`` define the fixes that move bodies now;
-    ``steps`` is the length of the run; ``fixes`` maps IDs to styles; ``box`` is the index of the
-    command that makes the box; ``lost`` is what thermo_modify says of lost atoms and bonds;
-    ``checkpoints``, whether there are saved states, from which a replay is to go on.
+    ``commands`` lead there; commands with a ``mover`` define the fixes that move bodies now.  ``steps`` is the length
+    of the run; ``fixes`` maps IDs to styles; ``box`` is the index of the command that makes the box; ``lost`` holds
+    the thermo_modify settings for lost atoms and bonds; ``checkpoints`` is True if a replay can continue from saved
+    states.
     """
 
     commands: list = field(default_factory=list)
@@ -80,7 +80,7 @@ class LeadIn:
 _NAMES = re.compile(r"\bvariable\s+(\w+)|\$\{(\w+)\}|\$(\w)|\bv_(\w+)")
 #: without any of these words a deck cannot define a fix that moves rigid bodies
 _HOPE = re.compile(r"rigid|gear/quat|\binclude\b|\bjump\s+(?!SELF)")
-#: what may bring a further run
+#: commands that may cause a further run
 _LATER = re.compile(r"^\s*(run|include|jump)\b")
 
 
@@ -95,7 +95,7 @@ class _Quit(Exception):
 class Interpreter:
     """Follows one deck.  ``lammps`` needs the methods command, expand and has_id.
 
-    ``folder`` is for files that the deck writes; ``say`` is told of what takes time.
+    ``folder`` is for files that the deck writes; ``say`` is called before slow commands.
 
     ``without`` are the IDs of fixes to leave out; ``which`` counts the runs that move bodies, None is
     the first that can be measured; ``variables`` are those that LAMMPS was given, tuples (name, value, ...).
@@ -141,7 +141,7 @@ class Interpreter:
         )
 
     def _check_options(self):
-        """Refuse options that name what the deck does not have."""
+        """Refuse options with names that the deck does not contain."""
         fixes, variables = sorted(self.without - self.seen), sorted(self.variables - self.names)
         if fixes:
             raise DeckError(f"--without: no fix {', '.join(fixes)} in the deck up to its run")
@@ -200,7 +200,7 @@ class Interpreter:
             self._pass(line)
 
     def _lammps(self, method, line, shown=None):
-        """What LAMMPS makes of a line; ``shown`` is what is said of it if LAMMPS refuses."""
+        """LAMMPS' result for a line; ``shown`` describes the line in the message if LAMMPS refuses it."""
         try:
             return getattr(self.lammps, method)(line)
         except Exception as error:  # the only class LAMMPS' module raises
@@ -221,7 +221,7 @@ class Interpreter:
         self.start.commands.append(self.moved)
 
     def _save(self):
-        """Keep the state that the last run has led to, unless that has been done."""
+        """Save the state after the last run, unless it is already saved."""
         if self.moved:
             self.moved.state = f"state{len(self.start.commands)}"
             self.save(self.moved.state)
@@ -258,7 +258,7 @@ class Interpreter:
         raise _Quit
 
     def _do_shell(self, words, line):
-        """Run programs once; only what changes this process is kept for the replay."""
+        """Run programs once; the replay repeats only commands that change this process."""
         if words[1:2] and words[1] in ("cd", "putenv"):
             self._pass(line)
         else:
@@ -278,14 +278,14 @@ class Interpreter:
         self._pass(line)
 
     def _do_read_data(self, words, line):
-        """Also a restart file, whether it was there or has been written by this deck."""
+        """Also read restart files, whether they existed before or were written by this deck."""
         own = self.folder / script.file_name(words[1])
         self._do_create_box(words, script.with_file(line, own) if own in self.written else line)
 
     _do_read_restart = _do_read_data
 
     def _do_write_data(self, words, line):
-        """Not where the deck has it, but where it is found again."""
+        """Write to a folder where a later command can find the file, not to the deck's own path."""
         own = self.folder / script.file_name(words[1])
         self.written.add(own)
         self._pass(script.with_file(line, own))
@@ -310,13 +310,13 @@ class Interpreter:
         self.start.fixes[id_] = style
 
     def _retire(self, id_):
-        """A fix that moved bodies is no more: what defined it is a command as any other."""
+        """After a fix that moved bodies is deleted, its definition is an ordinary command."""
         mover = self.movers.pop(id_, None)
         if mover:
             mover.mover = None
 
     def _do_compute(self, words, line):
-        """One that is made from what was left out is left out as well."""
+        """A definition that depends on an omitted one is omitted as well."""
         used = {word.partition("[")[0] for word in words[3:]}
         if set(words[3:4]) & set(SILENT_COMPUTES) or used & self.silenced:
             self.silenced.add("c_" + words[1])
@@ -324,13 +324,13 @@ class Interpreter:
             self._pass(line)
 
     def _do_thermo_style(self, words, line):
-        """Without what was left out or is of a fix that another takes the place of, and without variables."""
+        """Drop omitted items, items of fixes that are replaced, and variables."""
         gone = self.silenced | {"f_" + id_ for id_ in self.movers}
         kept = [w for w in words if w[:2] != "v_" and w.partition("[")[0] not in gone]
         self._pass(" ".join(kept))
 
     def _do_thermo_modify(self, words, line):
-        """What a run may end by: lost atoms, and temperatures of less than no degrees of freedom."""
+        """Causes that may end a run: lost atoms, and temperatures with a negative number of degrees of freedom."""
         for before, key, value in zip(words, words[1:], words[2:]):
             if key in RUNS_ON and before not in ("format", "colname"):
                 self._pass(f"thermo_modify {key} {value}")
@@ -350,7 +350,7 @@ class Interpreter:
         self._pass(line)
 
     def _do_velocity(self, words, line):
-        """Some depend on the fix: on its bodies, or on the degrees of freedom it takes off by now."""
+        """Some depend on the fix: on its bodies, or on the degrees of freedom that it removes at this time."""
         if "rigid" in words[2:] or words[2] in ("create", "scale"):
             self._use_movers()
         self._pass(line)
@@ -374,7 +374,7 @@ class Interpreter:
         self._pass_and_move(line)
 
     def _is_to_be_measured(self):
-        """Whether the run at hand is the one that ``which`` means.  Raises DeckError if none can be."""
+        """True if ``which`` selects the present run.  Raises DeckError if no run can be selected."""
         if self.which not in (None, self.runs):
             return False
         try:

@@ -1,4 +1,4 @@
-"""Trials of one deck: where its bodies are at chosen times, and what it cost to bring them there.
+"""Trials of one deck: positions of its bodies at chosen times, and the cost of reaching them.
 
 Positions are unwrapped, lengths and times in the units of the deck.
 """
@@ -30,12 +30,12 @@ class Trial:
     """One way to move the bodies of a deck, from its start to ``time[-1]``.
 
     ``keywords`` of fix gear/quat, or None for the deck's own line; ``time`` (S,), samples after the
-    start; ``positions`` (S, n, 3) of sites; ``center`` (S, B, 3), centers of mass of bodies;
-    ``start_evaluations``, evaluations of the forces before the first step; ``seconds`` and
-    ``start_seconds``, wall times of the steps and of what comes before them, one for each repetition;
-    ``energies`` (S, 4), the conserved and the kinetic energy of the system, and those of translation (without that of
-    all bodies together) and rotation of the bodies; None if they were not asked for, and with them ``positions`` and
-    ``center`` are those at the end only.
+    start; ``positions`` (S, n, 3) of sites; ``center`` (S, B, 3), centers of mass of bodies.  ``start_evaluations``,
+    evaluations of the forces before the first step. ``seconds`` and ``start_seconds``, wall times of the steps and of
+    the start before them, one for each repetition.  ``energies`` (S, 4), the conserved and the kinetic energy of the
+    system, and the kinetic energies of translation (relative to the common center of mass) and of rotation of the
+    bodies.  ``energies`` is None unless asked for; with energies, ``positions`` and ``center`` are given at the end
+    only.
     """
 
     keywords: str
@@ -56,7 +56,7 @@ class Trial:
 
     @property
     def fastest(self):
-        """The smallest of ``seconds``: what else the machine does can only add to it."""
+        """The smallest of ``seconds``: other load on the machine can only add to it."""
         return min(self.seconds)
 
     @property
@@ -68,8 +68,8 @@ class Scene:
     """The rigid bodies of a deck when they begin to move: B bodies of n sites.
 
     ``ids`` (n,), rising within a body; ``bodies`` (Bodies), which has them in this order;
-    ``positions`` (n, 3), unwrapped; ``size``, the median over bodies of more than one site of the
-    largest distance of a site from the center of mass.
+    ``positions`` (n, 3), unwrapped.  ``size``: the largest distance of a site from its center of mass, as the median
+    over bodies of more than one site.
     """
 
     def __init__(self, situations):
@@ -92,7 +92,7 @@ class Scene:
 
     @property
     def freedoms(self):
-        """Degrees of freedom of translation, without that of all bodies together, and of rotation of sites as points."""
+        """Degrees of freedom of translation, without the common translation, and of rotation of sites as points."""
         count, bodies = len(self.bodies), self.bodies
         return 3 * (count - 1), int(3 * count - bodies.linear.sum() - 3 * bodies.point.sum())
 
@@ -119,12 +119,10 @@ class Scene:
 class Deck:
     """An input script, followed up to the run that moves its bodies; use it in a with statement.
 
-    ``variables`` are tuples (name, value, ...), as after -var; ``without`` are IDs of fixes to
-    leave out; ``which`` counts the runs that move bodies, None is the first that can be measured;
-    ``ranks`` is the number of processes of LAMMPS; ``say`` is called with a line of text when the deck
-    takes time to come there, and ``on_wait`` every now and then while LAMMPS is at work; ``timeout`` in
-    seconds is what it may take.
-    Raises DeckError for decks that cannot be used.
+    ``variables`` are tuples (name, value, ...), as after -var; ``without`` are IDs of fixes to leave out.  ``which``
+    counts the runs that move bodies; None is the first that can be measured.  ``ranks`` is the number of LAMMPS
+    processes.  ``say`` is called with a line of text before slow commands of the deck, and ``on_wait`` repeatedly
+    while LAMMPS runs; ``timeout`` is the time limit in seconds. Raises DeckError for decks that cannot be used.
     """
 
     def __init__(self, path, variables=(), without=(), which=None, ranks=1, say=None, on_wait=None, timeout=None):
@@ -184,12 +182,12 @@ class Deck:
         self.size = self.scene.size
         self.units = self._situation.units
         self.time_unit, self.length_unit, *_ = UNITS[self.units]
-        #: whether atoms move that are in no body
+        #: True if atoms move that are in no body
         self.others = sum(len(part.sites.ids) for part in parts) > len(self.scene.ids)
         self._continued = [part.continued for part in parts]
 
     def _test_checkpoint(self):
-        """Do without checkpoints where steps from the last one are not those of the deck itself."""
+        """Drop the checkpoints if steps from the last one differ from the deck's own steps."""
         if not self.start.checkpoints or self._anew:
             return
         try:
@@ -210,13 +208,13 @@ class Deck:
 
     @property
     def partial(self):
-        """Whether the kinetic energy in thermodynamic output is only a part of that of the bodies."""
+        """True if thermodynamic output counts only a part of the kinetic energy of the bodies."""
         return self._situation.rotating or any("infile" in dict(line.keywords) for line in self.lines)
 
     @property
     def freedoms(self):
-        """Scene.freedoms, or None where they are others: bodies are held, their sites or three dimensions do not tell,
-        or the total angular momentum is conserved, too, as in a box that is not periodic in two directions.
+        """Scene.freedoms, or None if they are unknown: bodies are held, their sites or dimensions do not determine
+        them, or the total angular momentum is conserved, too, as in a box that is not periodic in two directions.
         """
         held = any(key in script.MASKS for line in self.lines for key, _ in line.keywords)
         alone = self._situation.flat or self._situation.periodic < 2
@@ -225,7 +223,7 @@ class Deck:
 
     @property
     def map_missing(self):
-        """Whether the deck lacks the atom map that fix gear/quat needs."""
+        """True if the deck lacks the atom map that fix gear/quat needs."""
         return self._situation.map_missing
 
     @property
@@ -233,12 +231,12 @@ class Deck:
         return self.start.steps * self.dt
 
     def takes(self, keywords):
-        """Whether these keywords of fix gear/quat can go with what the deck says of its bodies."""
+        """True if these keywords of fix gear/quat are compatible with the bodies of the deck."""
         return all(line.takes(keywords) for line in self.base)
 
     @property
     def accurate(self):
-        """Those of ACCURATE that the deck allows."""
+        """The keywords of ACCURATE that the deck allows."""
         return next(filter(self.takes, ACCURATE))
 
     def fix_lines_of(self, keywords):
@@ -252,7 +250,7 @@ class Deck:
         return [line.text() for line in self.fix_lines_of(keywords)]
 
     def run(self, keywords, segments, dt, timeout=None, energies=False):
-        """Trial over segments of these numbers of steps, perhaps with energies.  Raises LammpsError if LAMMPS does."""
+        """Trial over segments of these numbers of steps, perhaps with energies.  Raises LammpsError if LAMMPS fails."""
         new = self._anew if keywords is None else {b.id: b for b in self.fix_lines_of(keywords)}
         watched = {"partial": self.partial, "ids": self.scene.ranges, "unit": UNITS[self.units].energy}
         outcomes = self._ask(

@@ -1,4 +1,4 @@
-"""The methods that are tried beside the deck's own fix, and how they are called."""
+"""The methods that are tried beside the deck's own fix, and their names."""
 
 from .. import keywords
 
@@ -9,7 +9,7 @@ VALUES = {"second": (9, 7, 5, 11), "first": (8, 6, 4)}
 
 
 def methods():
-    """Keywords of all methods, the default of the fix first; one that only repeats it is left out."""
+    """Keywords of all methods, the default of the fix first; methods equal to the default are omitted."""
     formulation, number = (keywords.table()[name].standard() for name in ("formulation", "values"))
     # "9 (second), 8 (first)"
     repeated = {f"formulation {formulation} values {words.split()[0]}" for words in number.split(", ") if formulation in words}

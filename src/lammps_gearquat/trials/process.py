@@ -27,9 +27,10 @@ _LIMITED = re.compile(r"Fix gear/quat \S+: (start with known forces only.*)")
 _DANGEROUS = re.compile(r"Dangerous builds = (\d+)")
 SITES = "gearquat_sites"
 BODIES = "gearquat_bodies"
-#: variables with the energy that is conserved, the kinetic one, and those of translation and rotation of the bodies
+#: variables for the conserved energy, the kinetic energy, and the kinetic energies of translation and rotation of the
+#: bodies
 ENERGIES = ("gearquat_conserved", "gearquat_kinetic", "gearquat_translation", "gearquat_rotation")
-#: what atoms have that rotate by themselves
+#: properties of atoms that rotate by themselves
 ROTATING = ("omega_flag", "angmom_flag")
 COMPUTE_SITES = f"compute {SITES} all property/atom id xu yu zu"
 #: steps that are run beyond the point where a deck has been followed to, to test the checkpoint
@@ -78,7 +79,7 @@ def _sites(lammps):
 
 # --- the requests ---------------------------------------------------------------------------------
 def follow(deck, variables, without, which, log, tell):
-    """Situation of a deck.  ``tell`` is called with a line of text before what takes time."""
+    """Situation of a deck.  ``tell`` is called with a line of text before slow commands."""
     lammps = open_lammps(deck, variables, log)
     folder = Path(log).parent
     try:
@@ -134,7 +135,7 @@ def replay(lammps, folder, start, lines, need_map):
 
 
 def watch_energies(lammps, lines, partial, ids, unit):
-    """Make ENERGIES those of ``script.conserved`` and ``script.kinetic_parts`` for these FixLines.
+    """Define ENERGIES as ``script.conserved`` and ``script.kinetic_parts`` give them for these FixLines.
 
     ``ids``: words of the command group that choose the atoms of all bodies; ``unit``: mass times square of the
     velocity in the unit of energy.  The translation of all bodies together is not counted.
@@ -156,11 +157,11 @@ def _energies(lammps):
 
 
 def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments, energies, tell):
-    """TrialPart of a trial: ``segments`` are numbers of steps, after each of which sites are read.
+    """TrialPart of a trial: ``segments`` are numbers of steps; sites are read after each segment.
 
     With ``energies``, arguments of watch_energies, these are read instead, which takes an evaluation of the energy in
-    that step, and sites at the end only.  What ramps over the deck's run does so over ``ramp_steps`` here, however short the trial is.
-    ``tell`` is called with the number of steps of each segment that is done.
+    that step, and sites at the end only.  Quantities that ramp over the deck's run ramp over ``ramp_steps`` here,
+    however short the trial is. ``tell`` is called with the number of steps of each segment that is done.
     """
     lammps = open_lammps(deck, variables, log)
     try:
@@ -198,7 +199,7 @@ def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments
 
 
 def _warnings(text):
-    """Lines of a log that matter to who reads the answer."""
+    """Lines of a log that matter to the reader of the answer."""
     warnings = _LIMITED.findall(text)
     if any(int(number) for number in _DANGEROUS.findall(text)):
         warnings.append("neighbor lists were built too late: neigh_modify delay 0 every 1 check yes")

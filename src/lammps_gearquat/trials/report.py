@@ -89,7 +89,7 @@ def _drift(deck, found):
 
 
 def _drift_lines(deck, costs):
-    """What is not recommended because its energy drifts, warnings of what may drift, and how to measure that."""
+    """Notes on steps rejected for energy drift, warnings of possible drift, and how to measure it."""
     lines, doubtful = [], []
     recommended = {row.recommended for row in costs.rows if row.choice}
     for (keywords, dt), found in costs.drifts.items():
@@ -166,7 +166,7 @@ def _explained(costs):
 
 
 def _script_lines(deck, costs):
-    """What to put into the script for each error that was reached, and what to do about the others."""
+    """Lines to put into the script for each error that was reached, and advice on the others."""
     lines, reached = [], [row for row in costs.rows if row.choice]
     if not all(row.keep for row in reached):
         lines += map_lines(deck)
@@ -190,12 +190,12 @@ def _script_lines(deck, costs):
 
 
 def _refused(costs):
-    """Those of the drifts for whose sake a step is not recommended."""
+    """The drifts because of which a step is not recommended."""
     return {pair: found for pair, found in costs.drifts.items() if found.refused}
 
 
 def _nothing_holds(deck, costs, rows):
-    """That the steps which reach the errors of these rows drift, and by how much at least."""
+    """Note that the steps which reach the errors of these rows drift, with a lower bound of the drift."""
     refused = _refused(costs)
     if not rows or not refused:
         return []
@@ -212,7 +212,7 @@ def _nothing_holds(deck, costs, rows):
 
 
 def map_lines(deck):
-    """What fix gear/quat needs above the box of the deck, as lines."""
+    """Lines that fix gear/quat needs above the box of the deck."""
     if not deck.map_missing:
         return []
     return ["Above the command that makes the box (read_data, create_box):", "    atom_modify map yes", ""]

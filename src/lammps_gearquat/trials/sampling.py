@@ -1,11 +1,11 @@
-"""The longest steps that serve a long run of a scene whose trajectory diverges, as that of a liquid does.
+"""The longest acceptable steps for long runs with diverging trajectories, as in a liquid.
 
-There the error of a trajectory says little.  What counts is that the energy does not drift and that translation and
+There the error of a trajectory means little.  Two criteria count: the energy does not drift, and translation and
 rotation have the same temperature.
 
-1. Short runs of the fix without a keyword, which chooses the number of values itself, of what the user wants to be
-   tried, and of the deck's own fix: from the longest step that is known upwards, until one drifts.
-2. Longer runs of the cheapest step that may hold.  Where it does not, the next shorter one is tried, unless
+1. Short runs of the fix without keywords (it chooses the number of values itself), of the user's own keywords,
+   and of the deck's own fix: from the longest known step upwards, until one drifts.
+2. Longer runs of the cheapest step that may meet the bound.  If it does not, the next shorter step is tried, unless
    another method is cheaper then.
 3. The deck as it is, for as long, to compare with.
 """
@@ -27,9 +27,9 @@ FEWEST = 200
 BALANCED = 0.1
 #: the shortest step that is tried, as a part of the deck's own
 SHORTEST = 1.0 / 16.0
-#: what the run of a recommended step takes of the time that is left, and a first, shorter try before it
+#: fractions of the remaining time for the run of a recommended step, and for a shorter first try before it
 SHARE_LONG, FIRST_TRY = 0.75, 0.15
-#: the part of the budget that is left for the run of a recommendation if two steps were tried
+#: the fraction of the budget left for the run of a recommendation if two steps were tried
 SHARE_LAST = (1.0 - SHARE_SHORT) * (1.0 - FIRST_TRY) ** 2 * SHARE_LONG
 #: a run may take longer than expected by this factor
 SLACK = 1.2
@@ -40,7 +40,7 @@ WORTHWHILE = 1.1
 
 
 def neighbor(dt, shift):
-    """The step of STEPS times a power of ten that is ``shift`` places from the longest one not above ``dt``."""
+    """The step (STEPS times a power of ten) that is ``shift`` places from the longest one not above ``dt``."""
     power = math.floor(math.log10(dt) + 1e-9)
     place = max(k for k, step in enumerate(STEPS) if step <= dt / 10.0**power * (1 + 1e-6)) + shift
     decade, place = divmod(place, len(STEPS))
@@ -54,7 +54,8 @@ def shorter(dt):
 
 @dataclass(frozen=True)
 class LongRun:
-    """What a run with ``keywords`` (None: the deck's own fix) at a step said: ``seconds`` per unit of time, and a Drift."""
+    """The result of a run with ``keywords`` (None: the deck's own fix) at a step: ``seconds`` per unit of time, and a
+    Drift."""
 
     keywords: str
     dt: float
@@ -66,9 +67,9 @@ class LongRun:
 class Sampling:
     """The answer for a scene whose trajectory diverges; times in units of the deck.
 
-    ``runs``, list of LongRun; ``recommended``, (keywords, step) or None where nothing is known to hold ``bound``;
-    ``enough``, seconds of a budget in which the longest run could be made, or one that shows what holds; NaN if this one was
-    enough, or none is.
+    ``runs``, list of LongRun; ``recommended``, (keywords, step) or None if no step is known to meet ``bound``.
+    ``enough``, the budget in seconds for the longest run, or for one that decides; NaN if this budget was enough, or
+    none is.
     """
 
     bound: float
@@ -122,7 +123,7 @@ class Search:
         self.end, self.shortest = drift.longest(inquiry.deck), SHORTEST * inquiry.deck.dt
 
     def seconds_per_step(self, keywords):
-        """The smallest that is known: what else the machine does can only add to it."""
+        """The smallest known time: other load on the machine can only add to it."""
         known = [run.seconds * run.dt for run in self.answer.runs if run.keywords == keywords and run.drift.known]
         return min(known, default=max(self.inquiry.pace.values()))
 
@@ -146,7 +147,8 @@ class Search:
         return not found.refused, found.known or found.fails
 
     def climb(self, keywords, good, dt, least):
-        """The longest step that may hold: from ``dt`` on upwards, or else downwards to ``least``, or ``good``, which is known."""
+        """The longest step that may meet the bound: searched from ``dt`` upwards, or else downwards to ``least``, or
+        the known ``good``."""
         budget, said = self.inquiry.budget, True
         while said and budget.left() > self.until:
             holds, said = self.may_hold(keywords, dt)
@@ -164,7 +166,7 @@ class Search:
         return good
 
     def short_runs(self, tries):
-        """Dictionary keywords -> the longest step that may hold, for every method for which there is time."""
+        """Dictionary keywords -> the longest step that may meet the bound, for every method for which there is time."""
         deck, budget, best = self.inquiry.deck, self.inquiry.budget, 0.0
         self.until = (1.0 - SHARE_SHORT) * budget.left()
         self.short = (budget.left() - self.until) / SHORT_RUNS
@@ -196,12 +198,12 @@ class Search:
         return (first or [min(prices, key=prices.get)])[0]
 
     def hopeless(self, found):
-        """Whether a longer run could hardly show that this drift is within its bound."""
+        """True if a longer run could hardly show that this drift is within its bound."""
         beyond = abs(found.rate) - found.bound
         return found.known and (beyond > found.error or found.error < 0.25 * found.bound and beyond > -found.error)
 
     def long_runs(self, steps):
-        """Lengthen runs of the cheapest steps until one is known to hold: (keywords, step), or None."""
+        """Lengthen runs of the cheapest steps until one is known to meet the bound: (keywords, step), or None."""
         budget = self.inquiry.budget
         while steps:
             keywords = self.cheapest(steps)
@@ -223,7 +225,7 @@ class Search:
 
     # --- 3. the deck as it is ---------------------------------------------------------------------------
     def compare(self):
-        """A run of the deck as it is that is as long as that of the recommendation, or as the budget allows."""
+        """A run of the deck as it is, as long as the run of the recommendation or as the budget allows."""
         own, choice = self.answer.own, self.answer.choice
         wanted = choice.drift.time if choice else 0.0
         if own and own.drift.time < 0.9 * wanted and not own.drift.fails:
@@ -234,7 +236,8 @@ class Search:
 
 
     def enough(self):
-        """Sampling.enough: for the longest run of the choice, or else for an error of half the bound where a step may hold."""
+        """Sampling.enough: for the longest run of the choice, or else for an error of half the bound if a step may
+        meet it."""
         choice = self.answer.choice
         if choice and choice.drift.time > 0.9 * self.end:
             return math.nan

@@ -33,7 +33,7 @@ def _kelvin(deck):
 
 
 def verdict(run):
-    """What a LongRun says of its step, in a few words."""
+    """The verdict of a LongRun on its step, in a few words."""
     found = run.drift
     if found.fails:
         return "ends with an error"
@@ -70,7 +70,7 @@ def _explained(answer):
 
 
 def _advice(deck, answer):
-    """What to put into the script, or that nothing holds the bound."""
+    """Lines to put into the script, or a note that no step meets the bound."""
     choice, unit = answer.choice, _drift_unit(deck)
     longer = _longer(deck, answer)
     if choice:
@@ -98,7 +98,7 @@ def _advice(deck, answer):
 
 
 def _longer(deck, answer):
-    """What a longer budget is needed for, if one helps."""
+    """A note on the use of a longer budget, if one helps."""
     if math.isnan(answer.enough):
         return []
     what = f"A run of {_quantity(drift.longest(deck), deck.time_unit)}" if answer.choice else "A run that is long enough to tell"

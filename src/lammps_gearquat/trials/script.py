@@ -1,7 +1,7 @@
-"""What the commands of an input script say: lines, words, fix lines, runs, and what is refused.
+"""The commands of an input script: lines, words, fix lines, runs, and refusals.
 
-Text in, text out; LAMMPS is asked for the list of the fix's keywords only.  The rules for continuation,
-comments and quotes are those of LAMMPS' manual, "Parsing rules for input scripts".
+Text in, text out; LAMMPS is asked for the list of the fix's keywords only.  Continuation, comments and quotes
+follow LAMMPS' manual, "Parsing rules for input scripts".
 """
 
 import re
@@ -11,7 +11,7 @@ from .. import keywords
 
 
 class DeckError(ValueError):
-    """A deck that cannot be used, with the reason and what would help."""
+    """A deck that cannot be used, with the reason and a remedy."""
 
 
 # --- lines and words ----------------------------------------------------------------------------
@@ -107,11 +107,11 @@ def run_steps(words, now=0):
 
 # --- the fix that moves the bodies --------------------------------------------------------------
 RIGID = ("rigid", "rigid/nve", "rigid/small", "rigid/nve/small")
-#: those with a thermostat, a barostat or both
+#: styles with a thermostat, a barostat or both
 RIGID_NH = tuple(f"rigid/{ensemble}{small}" for ensemble in ("nvt", "npt", "nph") for small in ("", "/small"))
 #: length of their chains if tparam or pchain does not say it
 _CHAIN = "10"
-#: keywords that hold a pressure
+#: keywords that set a pressure
 PRESSURES = ("iso", "aniso", "x", "y", "z")
 _SUFFIX = re.compile(r"/(omp|opt|intel|gpu|kk)$")
 #: keywords that may be given many times, and how many words follow each
@@ -122,7 +122,7 @@ RIGID_KEYWORDS = dict.fromkeys(MASKS, _MASK_WORDS) | {"langevin": 4}
 RIGID_KEYWORDS |= dict.fromkeys(("temp", *PRESSURES, "tparam"), 3)
 RIGID_KEYWORDS |= dict.fromkeys(("couple", "pchain", "dilate", "infile", "reinit", "mol"), 1)
 RIGID_KEYWORDS |= {"gravity": 1}
-#: what the keywords of fix gear/quat are about that say what moves, and how it does by nature
+#: subjects of the keywords of fix gear/quat that define bodies and equations of motion
 _PHYSICAL = ("bodies", "physics")
 _REFUSED_KEYWORDS = {
     "langevin": "its forces are random, so there is no trajectory to compare: leave it"
@@ -143,7 +143,7 @@ def base_style(style):
 
 
 def _plain(word):
-    """A word as a script has it, in quotes if need be."""
+    """A word in the form of a script, in quotes if necessary."""
     return word if re.fullmatch(r"[^\s\"'#&$]+", word) else quote(word)
 
 
@@ -168,26 +168,27 @@ class FixLine:
         return " ".join(map(_plain, words))
 
     def only(self, *about):
-        """This line, of fix gear/quat, with those of its keywords that are about these subjects."""
+        """This line of fix gear/quat, with only its keywords about these subjects."""
         names = keywords.names(*about)
         return replace(self, keywords=tuple(pair for pair in self.keywords if pair[0] in names))
 
     @property
     def has_chains(self):
-        """Whether a thermostat or a box moves with the bodies of this line, of fix gear/quat."""
+        """True if a thermostat or a box moves with the bodies of this line, of fix gear/quat."""
         return bool({"temp", *PRESSURES, "tri", "xy", "xz", "yz"} & set(dict(self.keywords)))
 
     @property
     def isokinetic(self):
-        """Whether the kinetic energy is held constant."""
+        """True if the kinetic energy is held constant."""
         return dict(self.keywords).get("isokinetic", ("none",)) != ("none",)
 
     def takes(self, text):
-        """Whether the keywords in ``text`` can go with those that say what moves."""
+        """True if the keywords in ``text`` are compatible with the keywords that define bodies and equations of
+        motion."""
         return not self.isokinetic or dict(pairs(text)).get("formulation") == ("first",)
 
     def with_numerics(self, text):
-        """This line with the keywords in ``text`` instead of all those that say how to integrate.
+        """This line with its keywords about integration replaced by ``text``.
 
         Raises DeckError for text that is not pairs of a keyword and a value, or does not fit.
         """
@@ -200,9 +201,9 @@ class FixLine:
         return replace(kept, keywords=_with_coefficients(pairs(text)) + kept.keywords)
 
     def numerics(self, text):
-        """The keywords about integration of this line as text, changed by those in ``text``.
+        """The keywords about integration of this line as text, updated by the keywords in ``text``.
 
-        What belongs to the other formulation only goes with a change of formulation.
+        A change of formulation drops the keywords that belong to the other one only.
         """
         own, new = dict(self.only("integration").keywords), dict(pairs(text))
         if new.get("formulation", own.get("formulation")) != own.get("formulation"):
@@ -214,7 +215,7 @@ class FixLine:
 def conserved(lines, partial=False):
     """Energies while these FixLines move the bodies, as formulas of LAMMPS: (conserved, kinetic, commands before them).
 
-    ``partial``: the kinetic energy of atoms is not that of the bodies, which are all that moves.
+    ``partial``: the kinetic energy of atoms differs from the kinetic energy of the bodies, and only bodies move.
     """
     own = [line for line in lines if line.style == "gear/quat"]
     heats = [f"f_{line.id}[9]" for line in own if line.isokinetic]  # which econserve does not have
@@ -255,12 +256,12 @@ def _with_coefficients(numerics):
 
 
 def moves_bodies(style):
-    """Whether a fix of this style moves rigid bodies, by whatever method."""
+    """True if a fix of this style moves rigid bodies, by whatever method."""
     return style == "gear/quat" or base_style(style).split("/")[0] == "rigid"
 
 
 def parse_fix(words):
-    """FixLine of the words of a fix command for which ``moves_bodies`` holds."""
+    """FixLine of the words of a fix command for which ``moves_bodies`` is true."""
     id_, group, style, *rest = words[1:]
     who = f"fix {id_} {style}"
     length = {"single": 1, "molecule": 1, "custom": 2}.get(rest[0] if rest else "", 0)
@@ -379,7 +380,7 @@ _RANDOM_PAIR = re.compile(r"^(dpd|[emt]dpd|brownian)(/|$)")
 
 
 def check_scene(fixes, pair_style):
-    """Refuse what has no trajectory: ``fixes`` is a dictionary ID -> style, ``pair_style`` words."""
+    """Refuse decks without a deterministic trajectory: ``fixes`` is a dictionary ID -> style, ``pair_style`` words."""
     faults = []
     for id_, style in fixes.items():
         reasons = [why for pattern, why in _UNUSABLE if re.fullmatch(pattern, base_style(style))]

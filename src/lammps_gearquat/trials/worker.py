@@ -1,7 +1,7 @@
 """The process that runs LAMMPS, as its caller sees it; it may be one process or several ranks.
 
-LAMMPS gets processes of its own because it may end the process it is in, and because its library
-needs that of MPI loaded first.  See ``process`` for what they do.
+LAMMPS gets processes of its own because it may end the process it is in, and because its library needs the MPI
+library loaded first.  See ``process`` for what they do.
 """
 
 import os
@@ -36,12 +36,13 @@ class Positions:
 
 @dataclass
 class Situation:
-    """What a deck has set up when its bodies begin to move, as one rank sees it; units of the deck.
+    """The setup of a deck when its bodies begin to move, as one rank sees it; units of the deck.
 
-    ``start``, a LeadIn; ``dt``, the deck's time step; ``map_missing``, whether atoms cannot be found
-    by ID; ``sites`` of all its n atoms; ``labels`` (n, 2), fix and body of each, -1 for none;
-    ``masses`` (n,); ``rotating``, whether atoms have rotations of their own; ``flat``, whether all is in two
-    dimensions; ``periodic``, in how many directions the box is; ``continued``, the sites ``test_steps`` steps later.
+    ``start``, a LeadIn; ``dt``, the deck's time step; ``map_missing``, True if atoms cannot be found by ID.
+    ``sites`` of all its n atoms; ``labels`` (n, 2), fix and body of each, -1 for none;
+    ``masses`` (n,).  ``rotating``: atoms have their own rotations; ``flat``: the system is
+    two-dimensional; ``periodic``, the number of periodic directions; ``continued``, the sites
+    ``test_steps`` steps later.
     """
 
     start: object
@@ -60,7 +61,7 @@ class Situation:
 
 @dataclass
 class TrialPart:
-    """What one trial left on one rank: ``samples``, a list of Positions, and ``energies``, as in Trial; on rank 0
+    """The data of one trial on one rank: ``samples``, a list of Positions, and ``energies``, as in Trial; on rank 0
 
     ``seconds``, wall time of the steps; ``start_seconds``, of the set-up and of the start of the
     fix; ``start_evaluations``, evaluations of the forces that the start of fix gear/quat took;
@@ -77,18 +78,18 @@ class TrialPart:
 
 
 def _drain(connection):
-    """Close a connection once its other end is closed, which a process does when it ends."""
+    """Close a connection once its other end is closed; a process closes it when it ends."""
     with connection, suppress(EOFError, OSError):
         while connection.poll(PATIENCE):
             connection.recv_bytes()
 
 
 class Worker:
-    """Processes that run LAMMPS, begun anew when they are gone, until ``end``.
+    """Processes that run LAMMPS; they are restarted when they are gone, until ``end``.
 
-    ``folder``, whose path has to be short, is for a socket.  ``environment``: None for that of this process;
-    ``launcher``: the words before the number of ranks, if not those of the MPI beside Python or on the PATH.
-    ``on_news`` is called with what a request tells while it is at work, ``on_wait`` every now and then.
+    ``folder``, whose path has to be short, is for a socket.  ``environment``: None for the environment of
+    this process; ``launcher``: the words before the number of ranks, by default for the MPI beside Python or on the
+    PATH. ``on_news`` is called with the messages of a running request, ``on_wait`` repeatedly while it runs.
     """
 
     def __init__(self, folder, ranks=1, environment=None, launcher=()):
@@ -106,7 +107,7 @@ class Worker:
         self.process, self.connections = None, []
 
     def _begin(self):
-        """Start the processes and wait until all of them have connected themselves."""
+        """Start the processes and wait until all of them have connected."""
         address = self.folder / "socket"
         address.unlink(missing_ok=True)
         with socket.socket(socket.AF_UNIX) as listener, self.output.open("ab") as output:
@@ -134,7 +135,8 @@ class Worker:
             connection.send([os.path.abspath(folder) for folder in sys.path])
 
     def ask(self, function, timeout=None, **arguments):
-        """What all ranks answer: a function of these arguments and of ``tell``, which passes what it gets to ``on_news``.
+        """The answers of all ranks: a function of these arguments and of ``tell``, which passes its argument to
+        ``on_news``.
 
         Raises DeckError or LammpsError, also after ``timeout`` s.
         """
