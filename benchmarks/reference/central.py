@@ -1,6 +1,6 @@
 """Classical scattering by a central potential: deflection, cross sections and collision integrals.
 
-Quadrature alone, no trajectories: the reference of flights of two atoms.  Lengths in sigma, energies in
+The method is quadrature, without trajectories.  It is the reference for flights of two atoms.  Lengths in sigma, energies in
 epsilon.  With the distance of closest approach r_m for the energy E of relative motion (J. O. Hirschfelder,
 C. F. Curtiss and R. B. Bird, Molecular Theory of Gases and Liquids, Wiley 1954, Eqs. 1.5-18, 8.2-2, 8.2-3):
 

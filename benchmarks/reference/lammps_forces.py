@@ -106,7 +106,7 @@ class LammpsForces:
                 )
             if INTEGRATORS.match(style):
                 self._run(self.lmp.command, f"unfix {fix}")
-        # a thermo line of one word, so that nothing but forces and energy is computed
+        # thermo output with a single keyword, so that only forces and energy are computed
         self._run(
             self.lmp.commands_string,
             "timer timeout off\nrun_style verlet\nthermo_style custom step\nthermo 0\n"

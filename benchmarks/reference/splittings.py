@@ -5,8 +5,8 @@
 
 One step of size h is kick(b_1 h) drift(a_1 h) kick(b_2 h) ... or begins with a drift; read backwards
 it is the same.  The kinetic energy is quadratic in the momenta, so methods of Runge, Kutta and
-Nystroem keep their order.  An evaluation of the forces counts for each kick, and the last kick of a
-step shares its evaluation with the first one of the next step.
+Nystroem keep their order.  Each kick takes one evaluation of the forces; the last kick of a step
+shares its evaluation with the first kick of the next step.
 
 S. Blanes and P. C. Moan, J. Comput. Appl. Math. 142, 313 (2002): SRKN6b, SRKN11b and SRKN14a.
 W. Kahan and R.-C. Li, Math. Comput. 66, 1089 (1997): s17odr8a.  The free rotation by Jacobi's elliptic functions
@@ -148,7 +148,7 @@ class FreeRotation:
         order, parity = self._order(omega)
         i1, i2, i3 = np.take_along_axis(self.moments, order, axis=1).T
         w1, w2, w3 = np.take_along_axis(omega, order, axis=1).T
-        # 2T I_3 - L^2 and L^2 - 2T I_1: of one sign
+        # 2T I_3 - L^2 and L^2 - 2T I_1 have the same sign
         near = i1 * w1 * w1 * (i3 - i1) + i2 * w2 * w2 * (i3 - i2)
         far = i2 * w2 * w2 * (i2 - i1) + i3 * w3 * w3 * (i3 - i1)
         if (near * far <= 0).any():

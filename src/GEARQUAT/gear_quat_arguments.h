@@ -208,7 +208,7 @@ const Keyword &find_keyword(LAMMPS *lmp, const std::string &name, const Keyword 
 /// The numbers of values of a formulation that have tuned coefficients, in a row.
 std::string tuned_numbers(bool first, const std::string &between);
 
-/// True if a word is an integer; returns its value.
+/// Returns true if `text` is an integer, and stores its value in `integer`.
 bool read_integer(const std::string &text, int &integer);
 
 /// The table as text: a line of titles and a line for each row, whose columns are separated by two

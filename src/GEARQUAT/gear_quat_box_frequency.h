@@ -17,8 +17,8 @@ namespace LAMMPS_NS::GearQuat {
 
 class BoxFrequency {
  public:
-  /// Limits for the fastest oscillation, as a part of the limit of the method: beyond the first
-  /// there is a warning, beyond the second an error.
+  /// Thresholds for the fastest oscillation, as fractions of the limit of the method: a warning
+  /// above the first, an error above the second.
   static constexpr double WARNED = 0.6, REFUSED = 0.95;
 
   /// The number of radians per step that the method follows.

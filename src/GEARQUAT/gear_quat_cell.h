@@ -16,8 +16,8 @@
    form in both formulations of the bodies; formulation first has the momentum m X'.
 
    Sources: G. J. Martyna, D. J. Tobias, M. L. Klein, J. Chem. Phys. 101, 4177 (1994), section II.
-   For an upper triangular cell the weights b follow from the requirement that the flow has the
-   divergence of the measure V^(1-d) dh. */
+   For an upper triangular cell the weights b follow from the requirement that the flow conserves
+   the measure V^(1-d) dh. */
 
 #ifndef GEAR_QUAT_CELL_H
 #define GEAR_QUAT_CELL_H

@@ -161,7 +161,7 @@ class Coupling : protected Pointers {
  protected:
   Bodies &bodies;
 
-  /// Calls act with the index of every body on this rank that has a history, owned or large.
+  /// Calls `act(ibody)` for each body with a history on this rank: owned ones and copies of large ones.
   template <class Act> void for_moved(Act act) const
   {
     for (const auto *list : {&bodies.points, &bodies.tops})

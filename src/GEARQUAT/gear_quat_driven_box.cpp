@@ -69,8 +69,8 @@ void DrivenBox::rest()
   drive(nullptr);
 }
 
-/// The fix whose motion of the box is followed with the order of the method, null for none: other
-/// atoms are integrated by a second-order method, and a discontinuous box has no derivatives.
+/// The fix that moves the box and is followed with the order of the method, or null.  Fixes that
+/// also integrate atoms are of second order, and a discontinuous box has no derivatives.
 Fix *DrivenBox::smooth_driver() const
 {
   Fix *driver = nullptr;

@@ -257,8 +257,8 @@ class Collocation {
   static constexpr int MAX_NODES = 2 * MAX_HALF + 1;
 
   /// A function with WIDTH components and an equation of this ORDER: its exact start, and the
-  /// derivatives of that order at the nodes.  Rows of the start and rates are in the units of the
-  /// host: for a body in units of the node spacing.
+  /// derivatives of that order at the nodes.  Both are in the units of the host; for a body, time is
+  /// in node spacings.
   template <int WIDTH, int ORDER> struct Nodes {
     int pairs;                        ///< of nodes that the polynomial goes through
     double start[ORDER][WIDTH];       ///< the function, and its first derivative if ORDER is 2

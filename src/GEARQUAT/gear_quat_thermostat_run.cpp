@@ -4,7 +4,8 @@
 ------------------------------------------------------------------------- */
 
 /* Keyword temp, before a run: degrees of freedom, the target of its steps, a test for too strong
-   friction, and the start of the chains.  Also steps in which degrees of freedom change. */
+   friction, and the start of the chains.  It also handles steps in which degrees of freedom
+   change. */
 
 #include "gear_quat_thermostat.h"
 

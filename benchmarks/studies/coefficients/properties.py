@@ -12,9 +12,9 @@ from .kernel import LOST, gear
 from .prediction import open_loop, response
 from .search import Search, spectrum
 
-#: omega h at which single numbers are given, and decimal digits of the principal root
+#: value of omega h for properties that are a single number; decimal digits of the principal root
 AT, DIGITS = 0.3, 40
-#: damping of the damped oscillation, and frequency of the driven one, relative to the frequency of the oscillation
+#: damping rate of the damped oscillator, and driving frequency of the driven one, relative to the natural frequency
 DAMPED, DRIVEN = 0.1, 0.5
 #: ratios of a step to the step before
 RATIOS = (0.8, 0.9, 1.1, 1.25)

@@ -20,7 +20,7 @@ from .diffusion import diffusion
 from .fluctuations import compressibility, dielectric_constant
 from .kinds import kinds, of_kind, too_many
 
-#: numbers of blocks of a run and of groups of bodies; their scatter is the error of a correlation time
+#: number of blocks of a run and number of groups of bodies; the scatter among them is the error of a correlation time
 LONG_BLOCKS, GROUPS = 5, 10
 #: fewest frames of a block
 FEWEST = 20

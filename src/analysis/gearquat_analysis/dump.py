@@ -401,7 +401,7 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_s
     * ``atom_style``: columns of the data file in MDAnalysis' notation, such as "id type x y z", if its atom style is not
       full or molecular
 
-    Raises DumpError if a column is missing, and for a data file that cannot be read or has other types or masses than
+    Raises DumpError if a column is missing, or if a data file cannot be read or its types or masses differ from
     the dump.
 
     >>> from gearquat_analysis import open_dump

@@ -98,7 +98,8 @@ def scatter(deck, variables, without, which, parts, out, **asked):
     DECK is a LAMMPS input script with any pair style that has a cutoff, and with a fix gear/quat with
     tolerance that moves two bodies in a box that is not periodic.  The command follows it
     up to its run, and simulates thousands of flights instead of that run.  Impact parameters and energies are drawn
-    where they count most, orientations and angular momenta evenly, and every average comes with its standard error.
+    by importance sampling, orientations are uniform, and angular momenta follow the Boltzmann distribution.  Every
+    average is printed with its standard error.
     A run that was ended continues if it is started again.
     """
     from ..scatter import conduct

@@ -136,7 +136,7 @@ class Density:
 
 
 def shares_of(number):
-    """Parts (number,) of a mixture of so many temperatures."""
+    """Weights (number,) of the components of a mixture of ``number`` temperatures."""
     if number < 3:
         return np.full(number, 1.0 / number)
     return np.array([END, *[(1.0 - 2.0 * END) / (number - 2)] * (number - 2), END])

@@ -203,7 +203,7 @@ class Growth:
 
 #: an exponential has to grow by this factor, over at least so many samples, to be called one
 GROWTH, SAMPLES = 100.0, 20
-#: no tenth of the time may hold more than this part of it (of its logarithm)
+#: growth is steady only if no tenth of the time contributes more than this fraction of its logarithm
 STEADY = 0.4
 BLOCKS = 10
 #: differences below this fraction of the positions themselves are rounding

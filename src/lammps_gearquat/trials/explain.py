@@ -4,7 +4,7 @@ import re
 
 from gearquat_analysis.tables import rounded
 
-#: errors of LAMMPS and of the fix where atoms are not in the box, or not where their rank looks for them
+#: messages of LAMMPS and of the fix if atoms have left the box or are not where their rank expects them
 _GONE = re.compile(
     r"Lost atoms|of its (\d+ )?atoms left|Out of range atoms|atoms? .*missing|Non-numeric (pressure|atom coords)"
 )
