@@ -140,7 +140,8 @@ void Thermostat::begin_run(bool begins, double h)
   refuse_friction(h);
   // a single pass uses only the predicted friction
   const double fewest = (single_pass ? 2.0 : 1.0) * FEWEST_STEPS;
-  if (acts() && words.damp < fewest * std::fabs(update->dt) && comm->me == 0)
+  constexpr double ROUNDING = 1.0e-12;    // tolerance limits a step to exactly this many
+  if (acts() && words.damp < (1.0 - ROUNDING) * fewest * std::fabs(h) && comm->me == 0)
     error->warning(
         FLERR,
         "Fix gear/quat temp: a damping time of {:.3g} is less than {:.0f} time steps, and "

@@ -246,8 +246,9 @@ def test_another_thermostat_after_a_restart_begins_anew(lmp_tree):
 
 
 def test_a_damping_time_that_is_too_short(lmp_tree):
-    for damp, warned in ((0.03, True), (0.05, False)):
-        result = run(lmp_tree, [cluster(f"temp 0.5 0.5 {damp}", run="run 1")])
+    """With tolerance no step is longer than a tenth of it."""
+    for words, warned in (("0.03", True), ("0.05", False), ("0.03 tolerance 1e-6", False)):
+        result = run(lmp_tree, [cluster(f"temp 0.5 0.5 {words}", run="run 1")])
         assert ("is less than 10 time steps" in result.output + result.log) == warned
 
 
