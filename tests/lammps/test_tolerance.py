@@ -162,7 +162,7 @@ def test_two_controls_are_refused(lmp_tree):
     tuned = two_molecules(before=one).replace("fix move all", "fix move b")
     gear = tuned.replace("move b gear/quat molecule", "move b gear/quat molecule corrector gear")
     assert "nothing controls the errors of the bodies of fix move" in lmp_tree.succeed(gear).output
-    lmp_tree.refuse(tuned, "fix move (gear/quat) follows the changing time step, and tuned")
+    lmp_tree.refuse(tuned, "fix move (gear/quat) follows the changing time step, and with tuned")
     both = tuned.replace("move b gear/quat molecule", "move b gear/quat molecule tolerance 1e-8")
     lmp_tree.refuse(both, "fix move (gear/quat) changes the time step too")
     for before, message in (
