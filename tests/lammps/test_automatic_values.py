@@ -144,11 +144,13 @@ def test_the_friction_of_a_thermostat(lmp_tree, data):
     assert n != 5 and "friction" in why
 
 
-def test_a_step_too_long_for_any(lmp_tree, data):
-    result = run(lmp_tree, data, dt=8.0, steps=1)
+@pytest.mark.parametrize("words, dt", [("", 8.0), ("formulation first", 16.0)])
+def test_a_step_too_long_for_any(lmp_tree, data, words, dt):
+    """Formulation second judges vibrations and rotations, formulation first rotations."""
+    result = run(lmp_tree, data, words, dt=dt, steps=1)
     step = re.search(r"more than any number of values can follow for long; use a time step of ([\d.]+)", result.stdout)
-    assert 1.0 < float(step[1]) < 8.0
-    assert "more than any" not in run(lmp_tree, data, dt=float(step[1]), steps=1).stdout
+    assert 1.0 < float(step[1]) < dt
+    assert "more than any" not in run(lmp_tree, data, words, dt=float(step[1]), steps=1).stdout
 
 
 @pytest.mark.parametrize("ranks", [2, 4])
