@@ -112,11 +112,13 @@ void Extended::refuse(const std::vector<int> &atoms) const
                "points, spheres, ellipsoids, lines, triangles and dipoles",
                found[1]);
   if (found[2])
-    error->all(FLERR,
-               "Fix gear/quat: atom {} is {}, and the LAMMPS that this plugin was compiled for "
-               "lacks the headers to turn it; compile GEARQUAT for the source tree of your LAMMPS: "
-               "cmake -B build -D LAMMPS_SOURCE_DIR=/path/to/lammps",
-               found[2], SHAPES[shape]);
+    error->all(
+        FLERR,
+        "Fix gear/quat: atom {} is {}, which this plugin cannot turn, because it was "
+        "compiled without the headers for that; compile GEARQUAT for the source tree of your "
+        "LAMMPS: "
+        "cmake -B build -D LAMMPS_SOURCE_DIR=/path/to/lammps",
+        found[2], SHAPES[shape]);
 }
 
 /* ----------------------------------------------------------------------

@@ -364,9 +364,9 @@ inline double friction_bound(const Chain &chain, const ChainTarget &target, doub
   return std::sqrt(begun * begun + std::max(0.0, part - 1.0 - std::log(part))) / target.period;
 }
 
-/// The same for this chain in steps of h, found by a trial of two damping times; infinite if the
-/// chain cannot be followed.  A gas takes up heat only as kinetic energy, so bodies with a
-/// potential energy need no more.
+/// The largest |xi_1| (1/time) that this chain reaches with an ideal gas in steps of h, from a trial
+/// over two damping times; infinite if the steps are too long for the chain.  The friction of bodies
+/// with potential energy is not larger, because an ideal gas stores heat only as kinetic energy.
 inline double friction_on_trial(Chain chain, const ChainTarget &target, double twice_kinetic,
                                 double h)
 {

@@ -83,8 +83,8 @@ void Minimization::check_loads()
   idle = over_ranks(MPI_SUM, idle, world);
   if (idle && !warned && comm->me == 0)
     error->warning(FLERR,
-                   "Fix gear/quat: minimize does not turn {} bodies about axes on which all of "
-                   "their atoms lie, though their atoms have orientations of their own",
+                   "Fix gear/quat: minimize does not turn {} linear bodies about their axes, "
+                   "although their atoms have orientations of their own",
                    idle);
   warned = true;
 }

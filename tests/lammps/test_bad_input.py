@@ -283,7 +283,7 @@ THERMOSTATS = {
         "force * off off off torque * off off off",
         "",
         "",
-        "the bodies have no degrees of freedom that keywords force and torque leave on",
+        "keywords force and torque turn off all degrees of freedom of the bodies",
     ),
     "an axis": ("torque 2 off off on", "", "", "turns off some components for body 2 and not all"),
     "energy yes": (

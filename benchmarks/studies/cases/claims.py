@@ -281,7 +281,7 @@ def energy_held(case, formulation, figure, fine=False):
         f"the {formulation} formulation holds the total energy tightly",
         f"the largest error is below {PERCENT} of the swing of the potential energy",
         partial(energy_error, case=case, formulation=formulation, fine=fine),
-        lead="largest error (relative to the swing): ",
+        lead="largest error of the energy (in parentheses, relative to the swing): ",
     )
 
 
@@ -292,7 +292,7 @@ def formulations_part(case, source, paper, low, high):
         paper,
         f"the time is within {WITHIN} at one threshold; it is explained if times of Table 7 enclose it",
         partial(parting, case=case, low=low, high=high),
-        lead="time until they are apart by 0.1 / 1 / 3: ",
+        lead="time until their difference reaches 0.1 / 1 / 3: ",
         reason="the time depends more on threshold, body, start and projection than on the formulation",
     )
 
@@ -305,7 +305,7 @@ def step_does_not_matter(case, source, paper, until, other=None):
         f"all runs agree until t = {until * (1 - TIME_TOLERANCE):g}; it is explained if some do",
         partial(same_solution, case=case, until=until, other=other),
         all,
-        lead="time until the runs are apart by 1: ",
+        lead="time until the difference of the runs reaches 1: ",
         reason="the zero start leaves an error of first order, so another step changes the solution"
         " about as much as the other formulation",
     )

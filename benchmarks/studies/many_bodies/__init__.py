@@ -61,11 +61,11 @@ def pressure_measurements(results, method):
     instants = of.instants(results, method)
     start, after = np.ptp(instants, axis=0)
     most = ROUNDING * np.abs(instants[:, 0]).max()
-    what = f"{steps}: range of the pressures of the start"
+    what = f"{steps}: largest difference of the pressures at the start"
     yield Measurement(what, start, spec=".1g", unit="atm", most=most)
     _, theirs = np.ptp(of.instants(results, NVE_SMALL), axis=0)
     remark = f"{NVE_SMALL.label}: {theirs:.2g} atm"
-    what = f"{steps}: range of the pressures after {interval:g} fs"
+    what = f"{steps}: largest difference of the pressures after {interval:g} fs"
     yield Measurement(what, after, spec=".2g", unit="atm", remark=remark, most=theirs)
 
 

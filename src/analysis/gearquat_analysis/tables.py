@@ -72,7 +72,7 @@ def error_cells(value, error):
 
 
 def _decimals(value, error):
-    """((number, error) as text, power of ten); only the number, with six digits, if the error is not positive."""
+    """((number, error) as text, power of ten); if the error is not positive, the number has six digits and no error."""
     if not (math.isfinite(value) and math.isfinite(error) and error > 0.0):
         return (rounded(value, 6),), 0
     last = _power(error, 2) - 1

@@ -156,7 +156,7 @@ def _parted(columns):
     fate, parts = columns["fate"], []
     unparted, lost = np.count_nonzero(fate == "unparted"), np.count_nonzero(fate == "lost")
     if unparted:
-        parts.append(f"{unparted} of {len(fate)} pilot flights have not parted within --steps, and more are required")
+        parts.append(f"{unparted} of {len(fate)} pilot flights have not parted within --steps; increase --steps")
     if lost:
         parts.append(f"LAMMPS ended {lost} of {len(fate)} pilot flights ({columns['message'][fate == 'lost'][0]})")
     words = "; ".join(parts)
