@@ -37,8 +37,8 @@ int Arguments::parse_bodystyle(int narg, char **arg)
 {
   if (narg <= FIRST_WORD)
     error->all(FLERR,
-               "Fix gear/quat: the body style is missing, which says what makes a body: single, "
-               "molecule, group N ID1 ID2 ..., custom i_name or custom v_name");
+               "Fix gear/quat: the body style is missing; required: single, molecule, group N "
+               "ID1 ID2 ..., custom i_name or custom v_name");
   const std::string style = arg[FIRST_WORD];
   const int next = FIRST_WORD + 1;
   if (style == "keywords") {
@@ -205,8 +205,8 @@ void Arguments::check_ranges()
                                         : ", as formulation second requires");
     if (tolerance && row.most_with_tolerance && value.integer > row.most_with_tolerance)
       error->all(FLERR,
-                 "Fix gear/quat tolerance: {} {} are more than {}, the largest number with "
-                 "which a step may shrink",
+                 "Fix gear/quat tolerance: {} {} are more than {}, the largest number for which "
+                 "the step may become shorter",
                  value.integer, row.name, row.most_with_tolerance);
     if (row.of_tables && scheme.tuned && !has_tuned(scheme.formulation, value.integer))
       error->all(
@@ -234,16 +234,16 @@ void Arguments::check_control()
   if (thermostat.start != thermostat.stop)
     error->all(
         FLERR,
-        "Fix gear/quat temp: Tstart {} and Tstop {} differ, which cannot be used with "
-        "tolerance: the target changes with the number of the step, and steps have no common "
-        "length; use several runs with a target each",
+        "Fix gear/quat temp: Tstart {} and Tstop {} differ, which cannot be used with tolerance: "
+        "the target depends on the number of the step, but steps differ in length; use several "
+        "runs, each with a constant target",
         thermostat.start, thermostat.stop);
   for (int k = 0; k < PressureWords::COMPONENTS; ++k)
     if (pressure.on[k] && pressure.start[k] != pressure.stop[k])
       error->all(FLERR,
                  "Fix gear/quat: Pstart {} and Pstop {} differ, which cannot be used with "
-                 "tolerance: the target changes with the number of the step, and steps have no "
-                 "common length; use several runs with a target each",
+                 "tolerance: the target depends on the number of the step, but steps differ in "
+                 "length; use several runs, each with a constant target",
                  pressure.start[k], pressure.stop[k]);
 }
 

@@ -137,10 +137,10 @@ void Assembly::direct(double *axes, const Sides &sides)
 static const char *const FAULT_TEXTS[] = {
     "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to more than zero",
     "Fix gear/quat: inertia or velocities of body {} are not finite numbers",
-    "Fix gear/quat infile: the inertia tensor of body {} has a negative principal moment; no body "
-    "has",
-    "Fix gear/quat infile: the largest principal moment of body {} is more than the sum of the two "
-    "others; no body has",
+    "Fix gear/quat infile: the inertia tensor of body {} has a negative principal moment, which "
+    "is impossible",
+    "Fix gear/quat infile: the largest principal moment of body {} is more than the sum of the "
+    "two others, which is impossible",
     "Fix gear/quat infile: the center of mass of body {} is far away from all its atoms; are its "
     "position and its image flags right?"};
 
@@ -291,8 +291,8 @@ void Assembly::warn_of_clumps() const
   in_clumps = over_ranks(MPI_MAX, in_clumps, world);
   if (in_clumps && comm->me == 0)
     error->warning(FLERR,
-                   "Fix gear/quat: parts of body {} are more than half of a periodic box apart; if "
-                   "they belong together, the image flags of its atoms do not: unwrap them in the "
-                   "data file, or use set image before this fix",
+                   "Fix gear/quat: parts of body {} are more than half of a periodic box apart; "
+                   "if they belong together, the image flags of its atoms are wrong: unwrap the "
+                   "atoms in the data file, or use set image before this fix",
                    in_clumps);
 }

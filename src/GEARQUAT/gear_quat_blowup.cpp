@@ -281,15 +281,15 @@ Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
     if (!cause.what.empty()) return cause;
   }
   const std::string apart =
-      "Begin with atoms farther apart, as after minimize or a run with keywords tolerance and "
-      "temp. ";
+      "Begin with atoms farther apart, for example after minimize or a run with keywords "
+      "tolerance and temp. ";
   const Load &load = bodies.load_of(ibody);
   if (!std::isfinite(length(load.force) + length(load.torque_space)))
     return {"The forces became unstable first", apart + shorter_step(h)};
   const int others = inaccurate_bodies(ibody, h);
   if (others > 0 && others >= WIDESPREAD * (bodies.nmoved() - 1))
-    return {fmt::format("The motion of the bodies became unstable first: {} others on this rank "
-                        "also err by more than {:g} % of their motion in the last step",
+    return {fmt::format("The motion of the bodies became unstable first: {} other bodies on this "
+                        "rank also have errors above {:g} % of their motion in the last step",
                         others, 100.0 * INACCURATE),
             shorter_step(h)};
   if (is_pushed(ibody, h))

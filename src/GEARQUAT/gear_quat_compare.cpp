@@ -281,9 +281,9 @@ static void refuse_tears(Error *error, const Comparison &found)
   if (found.torn)
     error->all(
         FLERR,
-        "Fix gear/quat: some atoms of body {} are whole periods of the box away from where the "
-        "others are; image flags of a body's atoms have to change together (set image, "
-        "read_dump or rerun with ix iy iz), or define the fix after they have changed",
+        "Fix gear/quat: some atoms of body {} are displaced from the others by whole periods of "
+        "the box; image flags of a body's atoms have to change together (set image, read_dump or "
+        "rerun with ix iy iz), or define the fix after they have changed",
         found.torn);
   if (found.cut)
     error->all(

@@ -40,9 +40,9 @@ void DrivenBox::init()
     driven = true;
     if (!known(FixFact::CARRIES_BODIES, other))
       error->all(FLERR,
-                 "Fix gear/quat: fix {} ({}) changes the box, and does not tell other fixes of the "
-                 "remap that bodies would follow; use fix deform, fix press/berendsen, or fix npt "
-                 "on other atoms",
+                 "Fix gear/quat: fix {} ({}) changes the box without informing other fixes of "
+                 "the remap, so bodies cannot follow; use fix deform, fix press/berendsen, or "
+                 "fix npt on other atoms",
                  other->id, other->style);
     if (args.pressure.any())
       error->all(FLERR,
@@ -58,8 +58,9 @@ void DrivenBox::init()
   if (driven && domain->deform_vremap &&
       (args.thermostat.damp > 0.0 || args.isokinetic != Isokinetic::NONE))
     error->all(FLERR,
-               "Fix gear/quat: the velocities of bodies have the flow of fix deform remap v, which "
-               "is no temperature; leave out keywords temp and isokinetic, or use remap x");
+               "Fix gear/quat: the velocities of bodies contain the flow of fix deform remap v, "
+               "which is not thermal motion; leave out keywords temp and isokinetic, or use "
+               "remap x");
   drive(smooth_driver());
 }
 

@@ -59,8 +59,8 @@ void OtherFixes::init()
       watched.push_back(other);
       if (atom && comm->me == 0)
         error->warning(FLERR,
-                       "Fix gear/quat: fix {} ({}) moves single atoms, which bodies do not follow; "
-                       "the run will end when it moves one of a body; {}",
+                       "Fix gear/quat: fix {} ({}) moves single atoms, and bodies do not follow; "
+                       "the run will end with an error when it moves an atom of a body; {}",
                        other->id, other->style, row->instead);
     } else {
       taken.push_back(other);
@@ -125,8 +125,8 @@ void OtherFixes::refuse(const Fix *other, const ActOnAtoms &row, tagint shared) 
 {
   if (shared && row.act == ActOnAtoms::IMPULSE)
     error->all(FLERR,
-               "Fix gear/quat: fix {} ({}) exchanges an impulse with bodies in each step, among "
-               "them that of atom {}, which no number of values can follow; {}",
+               "Fix gear/quat: fix {} ({}) exchanges momentum in each step with bodies, such as "
+               "the body of atom {}, and no number of values can follow; {}",
                other->id, other->style, shared, row.instead);
   switch (row.on) {
     case ActOnAtoms::GROUP:
@@ -146,7 +146,7 @@ void OtherFixes::refuse(const Fix *other, const ActOnAtoms &row, tagint shared) 
       return;
   }
   error->all(FLERR,
-             "Fix gear/quat: fix {} ({}) changes single atoms of bodies, among them atom {}, and "
+             "Fix gear/quat: fix {} ({}) changes single atoms of bodies, such as atom {}, and "
              "bodies do not follow; {}",
              other->id, other->style, shared, row.instead);
 }
@@ -181,7 +181,7 @@ void OtherFixes::check_gravity()
     if (!any[0])
       error->warning(FLERR,
                      "Fix gear/quat: fix {} (gravity) exerts no force on bodies; if it has the "
-                     "keyword disable, as fix rigid/small wants it, leave that out",
+                     "keyword disable, which fix rigid/small requires, leave that out",
                      other->id);
     else if (any[1])
       error->warning(FLERR,

@@ -136,7 +136,7 @@ void Forces::look_at_variables()
   const auto names = info.get_variable_names(number);
   for (int i = 0; i < number; ++i) {
     if (is_unrepeatable(info.get_variable_info(i)))
-      why = fmt::format("{} may read variable {}, which is another one whenever it is evaluated",
+      why = fmt::format("{} may read variable {}, which has another value in each evaluation",
                         reader, names[i]);
   }
 }
@@ -175,7 +175,7 @@ std::vector<double> Forces::loads_at(bigint step, bool of_fixes)
   tallies.pretend();
   const auto look_at_tallies = [this](const std::string &reader) {
     if (why.empty() && tallies.used())
-      why = reader + " depends on energies or pressures, which are known in steps only";
+      why = reader + " depends on energies or pressures, which LAMMPS computes only in steps";
   };
   if (of_fixes) {
     clear_owned();

@@ -16,12 +16,12 @@ static constexpr char INTEGRATION[] = "integration", STEP[] = "step", BODIES[] =
                       PHYSICS[] = "physics", OUTPUT[] = "output";
 
 static constexpr char HELD[] =
-    "it acts on all momenta; define a second fix for the bodies that are held";
-static constexpr char FOR_CORRECTED[] = "tuned coefficients are those for the corrected one";
+    "it acts on all momenta; define a second fix for bodies whose motion is restricted";
+static constexpr char FOR_CORRECTED[] = "tuned coefficients require the corrected one";
 static constexpr char ONE_TEMPERATURE[] =
-    "both hold the kinetic energy of the bodies; leave out one of the two";
+    "both keep the kinetic energy of the bodies; leave out one of the two";
 static constexpr char MOVING_BOX[] = "with a moving box it is not possible yet";
-static constexpr char RENUMBERED[] = "the numbers of bodies change when bodies come";
+static constexpr char RENUMBERED[] = "the numbers of bodies change when bodies are inserted";
 
 using Value = KeywordValue;
 
@@ -58,7 +58,7 @@ static const std::vector<Keyword> TABLE = {
   Keyword("passes", INTEGRATION, "how many corrections a step makes with the same forces",
           [](Arguments &a, const Value &v) { a.scheme.passes = v.integer; })
       .integer({{1, PASSES_MOST, 0}}).or_auto(),
-  Keyword("compensate", INTEGRATION, "whether sums carry along what rounding takes from them",
+  Keyword("compensate", INTEGRATION, "whether sums are compensated for round-off",
           [](Arguments &a, const Value &v) { a.scheme.compensate = v.is("yes"); })
       .word({"no", "yes"}),
   Keyword("start", INTEGRATION, "which derivatives a history begins with",
@@ -71,13 +71,13 @@ static const std::vector<Keyword> TABLE = {
                 : v.is("yes")                  ? Projection::YES
                                                : Projection::NO;
           }).word({"auto", "yes", "no"}),
-  Keyword("tolerance", STEP, "the error that a step may make, which the time step follows",
+  Keyword("tolerance", STEP, "the largest error of a step, to which the time step is adapted",
           [](Arguments &a, const Value &v) {
             a.control.eps = v.number * v.unit;
             a.control.energy = v.measure == "energy";
           }).number({"length", "energy"})
-      .cannot_go_with({"isokinetic", "", "heat and multipliers need a fixed step and number "
-                       "of values"}),
+      .cannot_go_with({"isokinetic", "", "its heat and its multipliers require a constant step "
+                                         "and number of values"}),
   Keyword("dtmin", STEP, "the time step does not become shorter",
           [](Arguments &a, const Value &v) { a.control.shortest = v.number; })
       .number().requires_also({"tolerance", "", ""}),
@@ -90,14 +90,14 @@ static const std::vector<Keyword> TABLE = {
   Keyword("infile", BODIES, "the file that states bodies",
           [](Arguments &a, const Value &v) { a.infile = v.text; })
       .follows(Keyword::NAME, {"filename"}),
-  Keyword("reinit", BODIES, "whether changes in the atoms are taken over between runs",
+  Keyword("reinit", BODIES, "whether bodies adopt changes of their atoms between runs",
           [](Arguments &a, const Value &v) { a.reinit = v.is("yes"); })
       .word({"yes", "no"})
       .cannot_go_with({"infile", "yes", "the file states the bodies once and for all"}),
   Keyword("mol", BODIES, "the template of bodies that other fixes insert",
           [](Arguments &a, const Value &v) { a.mol = v.text; })
       .follows(Keyword::NAME, {"template-ID"}).requires_also({"bodystyle", "molecule", ""})
-      .cannot_go_with({"isokinetic", "", "bodies that come bring kinetic energy"}),
+      .cannot_go_with({"isokinetic", "", "inserted bodies add kinetic energy"}),
   Keyword("force", PHYSICS, "which components of the total force act on bodies M",
           [](Arguments &a, const Value &v) { a.masks.push_back(v.mask); })
       .follows(Keyword::MASK, {"M", "xflag", "yflag", "zflag"})
@@ -130,31 +130,32 @@ static const std::vector<Keyword> TABLE = {
   Keyword("thermostat", PHYSICS, "whether translation and rotation have one thermostat each",
           [](Arguments &a, const Value &v) { a.thermostat.separate = v.is("separate"); })
       .word({"total", "separate"}).requires_also({"temp", "", ""}),
-  pressure("iso", "the pressure, by which all edges of the box change alike",
+  pressure("iso", "the pressure, which changes all edges of the box by the same factor",
            [](Arguments &a, const Value &v) {
              a.pressure.set_all(v.numbers);
              std::fill_n(a.pressure.tied, 3, 0);
            }),
-  pressure("aniso", "the pressure along each edge of the box, which change one by one",
+  pressure("aniso", "the pressure along each edge of the box, and each edge changes independently",
            [](Arguments &a, const Value &v) { a.pressure.set_all(v.numbers); }),
   pressure("tri", "the pressure along each edge of a triclinic box, without shear stress",
            [](Arguments &a, const Value &v) {
              a.pressure.set_all(v.numbers);
              for (int k = 3; k < 6; ++k) a.pressure.set(k, {0.0, 0.0, v.numbers[2]});
            }),
-  pressure("x", "the pressure along x, by which that edge of the box changes",
+  pressure("x", "the pressure along x, which changes that edge of the box",
            [](Arguments &a, const Value &v) { a.pressure.set(0, v.numbers); }),
-  pressure("y", "the pressure along y, by which that edge of the box changes",
+  pressure("y", "the pressure along y, which changes that edge of the box",
            [](Arguments &a, const Value &v) { a.pressure.set(1, v.numbers); }),
-  pressure("z", "the pressure along z, by which that edge of the box changes",
+  pressure("z", "the pressure along z, which changes that edge of the box",
            [](Arguments &a, const Value &v) { a.pressure.set(2, v.numbers); }),
-  pressure("xy", "the shear component xy of the pressure, by which that tilt changes",
+  pressure("xy", "the shear component xy of the pressure, which changes that tilt",
            [](Arguments &a, const Value &v) { a.pressure.set(5, v.numbers); }),
-  pressure("xz", "the shear component xz of the pressure, by which that tilt changes",
+  pressure("xz", "the shear component xz of the pressure, which changes that tilt",
            [](Arguments &a, const Value &v) { a.pressure.set(4, v.numbers); }),
-  pressure("yz", "the shear component yz of the pressure, by which that tilt changes",
+  pressure("yz", "the shear component yz of the pressure, which changes that tilt",
            [](Arguments &a, const Value &v) { a.pressure.set(3, v.numbers); }),
-  Keyword("couple", PHYSICS, "which edges of the box change alike, by their mean pressure",
+  Keyword("couple", PHYSICS, "which edges of the box change by the same factor, due to their "
+                             "mean pressure",
           [](Arguments &a, const Value &v) {
             int *tied = a.pressure.tied;
             if (v.is("xyz")) tied[0] = tied[1] = tied[2] = 0;
@@ -165,9 +166,10 @@ static const std::vector<Keyword> TABLE = {
   Keyword("pchain", PHYSICS, "how many variables the thermostat of the box has",
           [](Arguments &a, const Value &v) { a.pressure.length = v.integer; })
       .integer({{0, Chain::LONGEST, 3}}),
-  Keyword("ptemp", PHYSICS, "the temperature by which the box has its mass, without temp",
+  Keyword("ptemp", PHYSICS, "the temperature that determines the mass of the box, without temp",
           [](Arguments &a, const Value &v) { a.pressure.temperature = v.number; })
-      .number().cannot_go_with({"temp", "", "the mass of the box has the temperature of temp"}),
+      .number().cannot_go_with({"temp", "", "the temperature of temp determines the mass of the "
+                                            "box"}),
   Keyword("flip", PHYSICS, "whether a box that is tilted by more than half a period is replaced",
           [](Arguments &a, const Value &v) { a.pressure.flip = v.is("yes"); }).word({"yes", "no"}),
   Keyword("dilate", PHYSICS, "the atoms that follow the box: all, because all are in bodies",
@@ -181,7 +183,7 @@ static const std::vector<Keyword> TABLE = {
                 : v.is("long")    ? Arguments::Report::LONG
                                   : Arguments::Report::SHORT;
           }).word({"no", "short", "long"}, "short"),
-  Keyword("preset", INTEGRATION, "whose choices hold for keywords that are not given",
+  Keyword("preset", INTEGRATION, "whose choices apply to keywords that are not given",
           [](Arguments &, const Value &) {}).word({"none", "paper"}),
   Keyword("c0", INTEGRATION, "which right-hand sides the first coefficient belongs to",
           [](Arguments &a, const Value &v) { a.scheme.velocity_c0 = v.is("velocity"); })

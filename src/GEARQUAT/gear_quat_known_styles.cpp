@@ -46,11 +46,10 @@ static constexpr StyleFact<PairFact> PAIRS[] = {
     {PairFact::UNREPEATABLE, "brownian", "random forces, scaled by the time step"},
     {PairFact::UNREPEATABLE, "^dsmc", "random collisions change velocities"},
     {PairFact::UNREPEATABLE, "^reax",
-     "its charges are those of fix qeq, which begins with charges of earlier steps"},
+     "fix qeq finds its charges, beginning with charges of earlier steps"},
     {PairFact::UNREPEATABLE, "^bpm",
-     "no memory of its own, but it stands beside bonds bpm, which break"},
-    {PairFact::UNREPEATABLE, "^amoeba",
-     "induced dipoles are predicted from those of earlier evaluations"},
+     "no memory of its own, but it is used with bonds bpm, which break"},
+    {PairFact::UNREPEATABLE, "^amoeba", "induced dipoles are predicted from earlier evaluations"},
     {PairFact::UNREPEATABLE, "^hippo", "as amoeba"},
     {PairFact::UNREPEATABLE, "^tracker", "keeps and counts contacts"},
     {PairFact::UNREPEATABLE, "^peri", "bonds break, and peri/ves has a viscoelastic history"},
@@ -101,7 +100,7 @@ static constexpr StyleFact<FixFact> FIXES[] = {
     {FixFact::REPEATABLE, "^planeforce", "removes a component"},
     {FixFact::REPEATABLE, "^setforce", "constants, or variables of positions and the time"},
     {FixFact::REPEATABLE, "^spring$", "a function of centers of mass"},
-    {FixFact::REPEATABLE, "^spring/self", "a function of positions and of those at the beginning"},
+    {FixFact::REPEATABLE, "^spring/self", "a function of present and initial positions"},
     {FixFact::REPEATABLE, "^viscous$", "a function of velocities"},
     {FixFact::REPEATABLE, "^wall/harmonic", "a function of positions and the place of the wall"},
     {FixFact::REPEATABLE, "^wall/lj", "as wall/harmonic: wall/lj93, wall/lj126 and wall/lj1043"},
@@ -171,7 +170,7 @@ static constexpr StyleFact<ComputeFact> COMPUTES[] = {
 
 static constexpr char GROUP[] = "give it a group without atoms of bodies";
 static constexpr char THERMOSTAT[] =
-    "use fix temp/csvr or temp/berendsen, whose change bodies take over, or fix langevin";
+    "use fix temp/csvr or temp/berendsen, which act on bodies, or fix langevin";
 static constexpr char CONSTRAINTS[] =
     "take the bonds and angles of bodies out of it: bodies are rigid already";
 static constexpr char WALL[] = "use a wall that exerts a force, such as fix wall/harmonic";
@@ -220,7 +219,7 @@ static constexpr ActOnAtoms ACTS_ON_ATOMS[] = {
     {"^tmd$", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "moves atoms towards a target",
      "use fix spring or fix spring/self"},
     {"^recenter", ActOnAtoms::SINGLE, ActOnAtoms::ANY,
-     "shifts positions, with keyword shift those of another group",
+     "shifts positions of atoms, or of another group with keyword shift",
      "use fix momentum, and subtract the center of mass in the analysis"},
     {"^shake", ActOnAtoms::SINGLE, ActOnAtoms::CONSTRAINED,
      "subtracts the degrees of freedom as well", CONSTRAINTS},

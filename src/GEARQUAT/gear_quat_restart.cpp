@@ -62,8 +62,8 @@ void Restart::read(const char *buf)
   } else
     error->all(FLERR,
                "Fix gear/quat: the restart file was written by {} release of GEARQUAT, whose "
-               "data of fix {} this one cannot read; continue with the release that wrote it, or "
-               "let that one write a data file with write_data and start from this",
+               "data of fix {} this release cannot read; continue with the other release, or let "
+               "it write a data file with write_data and start from that file",
                format < Release030::FORMAT     ? "an older (0.2.0 or before)"
                    : format > Sections::FORMAT ? "a newer"
                                                : "an unpublished",
@@ -135,8 +135,8 @@ bool Restart::resume(int group)
   if (found == Resumed::NONE) {
     if (comm->me == 0)
       error->warning(FLERR,
-                     "Fix gear/quat: the bodies of this command consist of other atoms than in "
-                     "the restart file; they are made again from their atoms");
+                     "Fix gear/quat: the bodies of this command do not consist of the same atoms "
+                     "as in the restart file; they are rebuilt from their atoms");
     return false;
   }
   const std::string missing = motion.read(sections);

@@ -304,7 +304,7 @@ StartFound Start::search(Forces &forces)
     reason.clear();
     choose(start, all.snapshots);
     if (lowers_order(start))
-      reason = fmt::format(", because forces vary in jumps, by {:.1g} of the motion in a step",
+      reason = fmt::format(", because forces change suddenly, by {:.1g} of the motion in a step",
                            start.change);
     seed_all(start);
     if (std::any_of(starters.begin(), starters.end(), [](const Starter &one) {

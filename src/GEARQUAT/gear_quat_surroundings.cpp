@@ -37,8 +37,8 @@ static constexpr double STILL = 0.0, MOVED_BY_OTHERS = -1.0;
 static constexpr double WORTH = 0.01;    // minimum share of pairs for a line of the script
 
 static constexpr char WITH_KSPACE[] =
-    " (LAMMPS then warns of exclusions with a kspace style, whose share in that energy stays: a "
-    "constant, too)";
+    " (LAMMPS then warns of exclusions with a kspace style; the part of that style in this "
+    "energy remains, and is constant, too)";
 
 static constexpr int MOST_GROUPS = 8 * sizeof(int);    // one bit of the mask each
 
@@ -164,8 +164,8 @@ std::vector<std::string> Surroundings::advice() const
     text.push_back("  " + exclude_own());
   }
   if (unused > 0 && args.bodystyle == Arguments::BodyStyle::GROUP) {
-    text.push_back(fmt::format("{} atoms of group {} are in no body, {} of them moved by no fix; a "
-                               "group of the bodies alone:",
+    text.push_back(fmt::format("{} atoms of group {} are in no body, and {} of them are moved by "
+                               "no fix; the following group has only atoms of bodies:",
                                unused, group->names[fix->igroup],
                                unused == unused_still ? "all" : std::to_string(unused_still)));
     text.push_back(fmt::format("  group bodies union {}; fix {} bodies gear/quat ...",

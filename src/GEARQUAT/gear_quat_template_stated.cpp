@@ -83,7 +83,7 @@ static StatedMolecule read_stated(LAMMPS *lmp, Molecule *molecule, const std::st
   if (!stated.differs) return stated;
   const std::string fault = fault_of(stated, size);
   if (!fault.empty())
-    lmp->error->all(FLERR, "Fix gear/quat mol: molecule template {} states {}; no body has",
+    lmp->error->all(FLERR, "Fix gear/quat mol: molecule template {} states {}, which is impossible",
                     template_id, fault);
   if (lmp->comm->me == 0)
     utils::logmesg(

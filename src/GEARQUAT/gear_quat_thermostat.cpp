@@ -263,10 +263,10 @@ void Thermostat::watch_cold(double h)
     if (comm->me == 0)
       error->warning(
           FLERR,
-          "Fix gear/quat temp: until step {} the {} kinetic energy of the bodies was below {:g} % "
-          "of its target for {:g} damping times; a thermostat only scales it, so bodies that "
-          "hardly "
-          "{} stay cold for long; velocity create gives them velocities between runs",
+          "Fix gear/quat temp: until step {} the {} kinetic energy of the bodies was below {:g} "
+          "% of its target for {:g} damping times; a thermostat only scales it, so bodies that "
+          "hardly {} stay cold for a long time; velocity create gives them velocities between "
+          "runs",
           update->ntimestep, part == ROTATION ? "rotational" : "translational", 100.0 * COLD,
           COLD_TIMES, part == ROTATION ? "rotate" : "move");
   }

@@ -199,8 +199,8 @@ void Thermostat::refuse_nothing(bool meets_all) const
   if (!acts() || (words.may_wait && counted == 0)) return;
   if (!total.any() && freedoms[ROTATION] == 0.0)
     error->all(FLERR,
-               "Fix gear/quat temp: the bodies have no degrees of freedom that keywords force and "
-               "torque leave on, so they have no temperature");
+               "Fix gear/quat temp: keywords force and torque turn off all degrees of freedom of "
+               "the bodies, so they have no temperature");
   // the part that may still become heat
   const double common = meets_all ? 0.0 : total.twice_energy();
   if (meets_all && freedoms[TRANSLATION] + freedoms[ROTATION] == 0.0) return;
@@ -209,9 +209,9 @@ void Thermostat::refuse_nothing(bool meets_all) const
                    {freedoms[TRANSLATION] > 0.0, freedoms[ROTATION] > 0.0}, words.separate);
   if (missing)
     error->all(FLERR,
-               "Fix gear/quat temp: the {}kinetic energy of the bodies is zero{}, and a thermostat "
-               "only scales it; give them velocities first",
-               missing, total.twice_energy() > 0.0 ? " but for a motion of all together" : "");
+               "Fix gear/quat temp: the {}kinetic energy of the bodies is zero{}, and a "
+               "thermostat can only scale it; give them velocities first",
+               missing, total.twice_energy() > 0.0 ? " apart from a common motion" : "");
 }
 
 /* ----------------------------------------------------------------------

@@ -51,7 +51,7 @@ REASONS = (
         r"`fix_modify temp`, `press` \| not there",
     ),
     (
-        r"changes the box, and does not tell other fixes",
+        r"changes the box without informing other fixes",
         "box that changes untold",
         r"unless they tell no other fix of it",
     ),

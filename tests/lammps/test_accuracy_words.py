@@ -35,7 +35,7 @@ def test_every_number_of_values_starts_with_its_order_and_stays_rigid(liquid, fo
     result, x = liquid(f"formulation {formulation} corrector gear values {values}")
     found = re.search(r"start of order (\d+) from (\d+) force evaluations", result.output)
     # the switching function of the forces has kinks, which limit the derivatives
-    full, kinks = values + (values % 2 == 0), "forces vary in jumps" in result.output
+    full, kinks = values + (values % 2 == 0), "forces change suddenly" in result.output
     assert int(found[1]) == (min(full, 8) if kinks else full)
     assert not kinks or values > 6
     pairs = (values + 1) // 2
@@ -179,7 +179,7 @@ def test_jumping_forces_are_told(lmp_wheel, examples):
             deck, dict(forces=forces, steps=1, every=1, values=12, corrector="gear", dt=1.0)
         )
         orders[forces] = int(re.search(r"start of order (\d+) from", result.output)[1])
-        jump = re.search(r"because forces vary in jumps, by (\S+) of the motion", result.output)
+        jump = re.search(r"because forces change suddenly, by (\S+) of the motion", result.output)
         assert (jump is None) == (forces == "smooth")
     assert orders == {"smooth": 13, "plain": 4}
     assert 1e-5 < float(jump[1]) < 10.0

@@ -13,7 +13,7 @@ infile couple pchain ptemp flip
 """
 ARGUMENTS = {
     **{f"molecule {key}": f"{key}: the value is missing; required: " for key in KEYWORDS.split()},
-    "": "the body style is missing, which says what makes a body: single, molecule, group N ID1",
+    "": "the body style is missing; required: single, molecule, group N ID1",
     "polygon": "Unknown fix gear/quat bodystyle: polygon (single, molecule, group or custom)",
     "group": "group: N is missing; required: N ID1 ID2",
     "group 0": "number of groups is 0 and must be a positive integer",
@@ -231,7 +231,7 @@ SCENES = {
     "flow and temp": (
         "change_box all triclinic",
         "unfix move\nfix move all gear/quat molecule temp 1 1 1\nfix d all deform 1 xy erate 0.1 remap v\nrun 1",
-        "the velocities of bodies have the flow of fix deform remap v",
+        "the velocities of bodies contain the flow of fix deform remap v",
     ),
     "box and tolerance": (
         "",
@@ -323,7 +323,7 @@ PRESSURES = {
         "group 1 one iso 1 1 1",
         "group one molecule 1\ngroup two molecule 2",
         "fix second two gear/quat group 1 two",
-        "fix move (gear/quat) changes the box, and does not tell other fixes",
+        "fix move (gear/quat) changes the box without informing other fixes",
     ),
     "respa": ("molecule iso 1 1 1", "", "run_style respa 2 1 pair 1", "cannot be used with run_style respa; use run_style verlet"),
     "a field": ("molecule iso 1 1 1", "", "fix a all addforce 0 0 1", "cannot be used with fix a (addforce), which may change forces"),

@@ -248,7 +248,7 @@ def test_masses_that_go_from_atom_to_atom(lmp_tree, swap, extended):
         assert kept[column] == pytest.approx(fresh[column], rel=1e-9, abs=1e-12)
 
 
-TORN = "some atoms of body 1 are whole periods of the box away"
+TORN = "some atoms of body 1 are displaced from the others by whole periods of the box"
 CUT = "the box was changed while body 1 lies across its faces"
 ACROSS = "displace_atoms all move 9.5 0 0\nfix move all"
 

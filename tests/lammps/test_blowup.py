@@ -26,7 +26,7 @@ TOO_MUCH = "exp(1000*v_on)"
 WHERE = re.compile(
     r"Fix gear/quat: blow-up in step (\d+), time (\S+): body (\d+) (.*?); its atom (\d+) is (\S+) away "
     r"from atom (\d+)(?:, and .*?)?\. (The [a-z ]+) became unstable first(?:: .*?)?\. "
-    r"Begin with atoms farther apart, as after minimize or a run with .*?\. Halve the time step, (\S+), until"
+    r"Begin with atoms farther apart, for example after minimize or a run with .*?\. Halve the time step, (\S+), until"
 )
 
 

@@ -146,7 +146,7 @@ def test_factors_of_positions_are_followed(lmp_tree, name):
 
 def test_a_factor_of_an_energy_is_not_followed(lmp_tree):
     result = lmp_tree.succeed(scaled("equal 1+0.001*pe"))
-    said = "pair style hybrid/scaled depends on energies or pressures, which are known in steps only"
+    said = "pair style hybrid/scaled depends on energies or pressures, which LAMMPS computes only in steps"
     assert f"{FALLBACK} {said}" in result.stdout
 
 
@@ -162,5 +162,5 @@ def test_random_factors_are_those_without_a_look_at_forces(lmp_tree, words):
 
 def test_a_random_factor_is_named(lmp_tree):
     result = lmp_tree.succeed(scaled("equal random(0.5,1.5,4711)"))
-    said = "pair style hybrid/scaled may read variable factor, which is another one whenever it is evaluated"
+    said = "pair style hybrid/scaled may read variable factor, which has another value in each evaluation"
     assert f"{FALLBACK} {said}" in result.stdout

@@ -250,14 +250,14 @@ def test_atoms_that_no_body_uses(lmp):
         return report(lmp, deck)
 
     text = "\n".join(lines())
-    assert "  1 atoms of group all are in no body, all of them moved by no fix; " in text
+    assert "  1 atoms of group all are in no body, and all of them are moved by no fix; " in text
     proposed = proposals(lines()).splitlines()
     assert "neigh_modify exclude group left left exclude group right right" in proposed
     assert "group bodies union left right" in proposed
     mended = lines("\ngroup bodies union left right", "bodies")
     assert "in no body" not in "\n".join(mended)
     moved = lines("\ngroup third id 3\nfix third third nve")
-    assert "in no body, 0 of them moved by no fix" in "\n".join(moved)
+    assert "in no body, and 0 of them are moved by no fix" in "\n".join(moved)
 
 
 # --- omitted operations change nothing ------------------------------------------------------------

@@ -5,7 +5,7 @@ import pytest
 from scenes import WATER_MASSES, last_frame, restarted, water, water_data
 
 STEPS = 40
-WARNING = "the bodies of this command consist of other atoms than in the restart file"
+WARNING = "the bodies of this command do not consist of the same atoms as in the restart file"
 START = "start of order"
 
 

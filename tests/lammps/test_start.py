@@ -189,7 +189,7 @@ def test_evaluations_of_a_liquid(lmp_tree, liquid, name):
     """The number of evaluations is limited to the useful ones, at a typical step."""
     order, evaluations, said, _ = liquid(lmp_tree, name, 2.0)
     assert 0 < evaluations <= MIXTURES[name][2]
-    assert ("because forces vary in jumps" in said) == (order < 8)
+    assert ("because forces change suddenly" in said) == (order < 8)
     if name == "plain cut-off":
         assert order == 4
 
