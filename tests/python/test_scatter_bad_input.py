@@ -65,7 +65,7 @@ OPTIONS = {
     "too near": (("--temperature", "1", "--largest", "1.5"), "a larger --largest is required, or --count"),
     "far apart": (
         [word for value in ("1", "2", "6.5") for word in ("--temperature", value)],
-        "--temperature 2 and 6.5: flights at one of them say little about the other",
+        "--temperature 2 and 6.5: flights at one of them contribute little to averages at the other",
     ),
     "no way to part": (("--temperature", "1", "--steps", "30"), "of 768 pilot flights have not parted within --steps"),
     "a dump and new flights": (("--replay", "3", "--count", "8"), "--replay takes all settings from the folder --out"),

@@ -39,7 +39,7 @@ INTERRUPTED = 130
         multiple=True,
         help="Temperature of the gas, in units of the deck; repeatable: several from the same flights.",
     ),
-    cloup.option("--energy", type=POSITIVE, help="Instead of it, one energy of the relative translation."),
+    cloup.option("--energy", type=POSITIVE, help="Energy of the relative translation, instead of --temperature."),
     cloup.option(
         "--rotation",
         type=cloup.FloatRange(min=0),
@@ -51,7 +51,12 @@ INTERRUPTED = 130
         type=POSITIVE,
         help="Largest impact parameter.  Default: found by pilot flights, from --error.",
     ),
-    cloup.option("--seed", type=FROM_ZERO, default=1, help="Flights are a function of it and of their number."),
+    cloup.option(
+        "--seed",
+        type=FROM_ZERO,
+        default=1,
+        help="Seed of the random numbers; a flight depends on it and on the number of the flight.",
+    ),
 )
 @cloup.option_group(
     "How many",
@@ -61,11 +66,19 @@ INTERRUPTED = 130
         default=0.01,
         help="Simulate flights until the relative standard errors of the first two quantities are this small.",
     ),
-    cloup.option("--most", type=COUNT, default=1_000_000, help="Flights after which --error is given up."),
-    cloup.option("--first", type=FROM_ZERO, help="Number of the first flight, with --count.  Default: 0."),
-    cloup.option("--count", type=COUNT, help="So many flights, whatever their error."),
     cloup.option(
-        "--steps", type=COUNT, default=200_000, help="Steps after which a flight is given up, as unparted."
+        "--most",
+        type=COUNT,
+        default=1_000_000,
+        help="Largest number of flights that are simulated to reach --error.",
+    ),
+    cloup.option("--first", type=FROM_ZERO, help="Number of the first flight, with --count.  Default: 0."),
+    cloup.option("--count", type=COUNT, help="Number of flights, which replaces --error."),
+    cloup.option(
+        "--steps",
+        type=COUNT,
+        default=200_000,
+        help="Largest number of steps of a flight; longer flights are ended and counted as unparted.",
     ),
     cloup.option(
         "--processes", type=COUNT, help="Processes that simulate flights.  Default: one for each core."
@@ -152,7 +165,7 @@ def _settled(asked):
     if not temperatures and energy is None:
         raise DeckError("either --temperature or --energy is required")
     if temperatures and energy is not None:
-        raise DeckError("not both --temperature and --energy: translation has either of them")
+        raise DeckError("not both --temperature and --energy: only one of them determines the translation")
     if asked["sigma"] is not None and energy is not None:
         raise DeckError("--sigma is for collision integrals at a temperature: it has to be left out with --energy")
     if asked["first"] is not None and asked["count"] is None:
@@ -160,8 +173,8 @@ def _settled(asked):
     for low, high in zip(temperatures, temperatures[1:]):
         if high > GAP * low * (1.0 + 1e-12):
             raise DeckError(
-                f"--temperature {low:g} and {high:g}: flights at one of them say little about the other, because they are"
-                f" more than a factor of {GAP:g} apart; a temperature between them is required, or a run for each"
+                f"--temperature {low:g} and {high:g}: flights at one of them contribute little to averages at the other, because"
+                f" they are more than a factor of {GAP:g} apart; a temperature between them is required, or a run for each"
             )
     if energy is not None:
         asked |= {"temperature": None, "rotation": rotation or 0.0}

@@ -77,8 +77,8 @@ def _reachable(farthest, error, given):
     left = max(left, *((one["viscosity"] or 0.0) for one in farthest.left))
     if given and left >= error:
         raise DeckError(
-            f"--largest {given:g}: {left:.1e} of the whole is beyond it, so that no number of flights makes errors as small"
-            f" as {error:g}; a larger --largest is required, or --count, the number of flights"
+            f"--largest {given:g}: {left:.1e} of the loss is beyond it, so errors cannot be as small as {error:g} with any number"
+            f" of flights; a larger --largest is required, or --count, the number of flights"
         )
 
 

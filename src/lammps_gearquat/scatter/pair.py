@@ -162,7 +162,7 @@ class Pair:
             )
         for key in REFUSED_KEYWORDS:
             if key in given:
-                raise DeckError(f"{who}: keyword {key} has to be left out, for the command places the bodies")
+                raise DeckError(f"{who}: keyword {key} has to be left out, because the command places the bodies")
         for id_, style in start.fixes.items():
             if id_ != line.id and not IDLE.fullmatch(style):
                 raise DeckError(

@@ -211,14 +211,13 @@ def _nearest(left, edges, allowed, cutoff, gone):
         loss, part = LOSSES[int(np.argmax(left[-1]))], left[-1].max()
         if not np.isfinite(part):
             raise DeckError(
-                f"the loss of {loss} does not decay towards the cutoff of {cutoff:.6g}, so what the"
-                " cutoff takes away is not known; a longer cutoff is required, or the largest impact parameter with"
-                " --largest"
+                f"the loss of {loss} does not decay towards the cutoff of {cutoff:.6g}, so the error due to the cutoff"
+                " is not known; a longer cutoff is required, or the largest impact parameter with --largest"
             )
         raise DeckError(
-            f"the cutoff of {cutoff:.6g} is inside the largest impact parameter: the forces that it takes"
-            f" away are {part:.1e} of the loss of {loss}, and {allowed:.1e} is allowed, a tenth of"
-            " --error; a longer cutoff or a larger --error is required"
+            f"the cutoff of {cutoff:.6g} is inside the largest impact parameter: collisions beyond it contribute"
+            f" {part:.1e} of the loss of {loss}, but only {allowed:.1e}, a tenth of --error, is allowed;"
+            " a longer cutoff or a larger --error is required"
         )
     return edges[max(int(np.argmax((left <= allowed).all(axis=1))), 1)]
 

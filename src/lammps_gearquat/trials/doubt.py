@@ -39,8 +39,8 @@ def cut_to(time, doubt, errors):
             if good[-1] == last:
                 return last, ""
             return int(good[-1]), (
-                f"the trials end at t = {time[good[-1]]:g}, not at {time[-1]:g}, because later the two best"
-                f" ones differ by more than {rounded(error / MARGIN, 2)}, so an error of {error:g} cannot be judged"
+                f"the trials end at t = {time[good[-1]]:g}, not at {time[-1]:g}, because the two best trials"
+                f" differ by more than {rounded(error / MARGIN, 2)} later, so an error of {error:g} cannot be judged"
             )
     index = max(int(SHORTEST * len(time)) - 1, 0)
     return index, (

@@ -31,7 +31,7 @@ def explained(message, deck, dt, reached=None):
     if dt > deck.dt:
         remedy = f"a step of {deck.dt:g} (as in the script) or shorter is required"
     else:
-        remedy = f"lmp -in {deck.path.name} has to reach the time first, with a shorter timestep or from other positions"
+        remedy = f"change the timestep or the positions until lmp -in {deck.path.name} reaches this time"
     return (
         f"{when}atoms moved so far in a step of {dt:g} that LAMMPS lost them: the step is too long for the forces, or"
         f" atoms overlap; {remedy} (LAMMPS: {said})"

@@ -157,7 +157,7 @@ class Deck:
             parts = self._ask(process.follow, self.timeout, without=self.without, which=self.which)
         except LammpsError as error:
             remedy = "; a longer --budget gives it more time" if self.timeout else ""
-            raise script.DeckError(f"LAMMPS did not come to the run to be measured: {error}{remedy}") from error
+            raise script.DeckError(f"LAMMPS did not reach the run to be measured: {error}{remedy}") from error
         self.worker.on_news = None
         self._situation, self.start = parts[0], parts[0].start
         self.dt = self._situation.dt
@@ -173,7 +173,7 @@ class Deck:
         if self.start.checkpoints:
             notes += [
                 f"fix {b.id} {b.style}, keyword temp: the variables of its chains are zero at the beginning of"
-                " every trial, and not what the runs before leave"
+                " every trial; the values from earlier runs are not used"
                 for b in self._anew.values()
                 if b.has_chains
             ]

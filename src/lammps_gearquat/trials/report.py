@@ -139,12 +139,12 @@ def _how_to_measure(deck, doubtful):
 def _explained(costs):
     lines = [
         "Every method evaluates the forces once per step.  Seconds are wall times of the steps.  The start,",
-        "which is LAMMPS' set-up and, with fix gear/quat, the evaluations of the forces that its first",
-        "derivatives take, is paid once per run and stands apart.",
-        "Each timestep is measured: a trial at this step or a longer one held the error, with the doubt",
-        "about the reference added.  <= marks a cost where no step a little longer was tried.  Speed-up is",
-        "over the deck's own fix at the same error; ~ marks one where the own cost is not known closely.",
-        "Where a smaller error was measured as cheaper, its step serves the larger one as well.  Drift is the slope of",
+        "which is LAMMPS' set-up and, with fix gear/quat, the evaluations of the forces for its first",
+        "derivatives, takes place once per run and is not included.",
+        "Each timestep is measured: a trial at this step or a longer one had at most this error, with the",
+        "uncertainty of the reference included.  <= marks an upper bound of the cost: a slightly longer step was not",
+        "tried.  Speed-up is relative to the deck's own fix at the same error; ~ marks an approximate one.",
+        "If the step for a smaller error is cheaper, the table has it for the larger error, too.  Drift is the slope of",
         "the conserved energy over a further run, in kT of the mean kinetic energy.  A step at which it is larger than",
         f"{costs.bound:g} (--drift) is not recommended.",
     ]

@@ -64,8 +64,8 @@ def _explained(answer):
     return [
         "Drift is the slope of the conserved energy over the longest run at this step, in kT of the mean kinetic energy",
         f"and per degree of freedom.  A step holds if that is below {answer.bound:g}, with {drift.SURE:g} standard errors added, and if",
-        f"the temperatures of translation and rotation do not differ by more than {100 * drift.BALANCE:g} % for sure.  Seconds are",
-        "wall times of the steps.  Speed-up is over the deck as it is.",
+        f"the temperatures of translation and rotation do not differ significantly by more than {100 * drift.BALANCE:g} %.  Seconds",
+        "are wall times of the steps.  Speed-up is relative to the deck as it is.",
     ]
 
 

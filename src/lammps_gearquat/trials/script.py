@@ -93,14 +93,14 @@ def run_steps(words, now=0):
     if "upto" in words:
         steps -= now
     if {"start", "stop"} & set(words):
-        raise DeckError("run ... start or stop: the trials are of runs that begin and end by themselves")
+        raise DeckError("run ... start or stop: only runs without these keywords can be measured")
     if "every" in words:
         for command in words[words.index("every") + 2 :]:
             name = (split(command) or ["NULL"])[0]
             if name not in ("NULL", "print"):
                 raise DeckError(
-                    f"run ... every executes '{command}' while the bodies move: the trials cannot;"
-                    " give a deck whose run has no such command"
+                    f"run ... every executes '{command}' while the bodies move, which the trials cannot do;"
+                    " use a deck whose run has no such command"
                 )
     return steps
 
@@ -304,8 +304,8 @@ def for_trials(line):
         standard = keywords.table()["corrector"].standard(tolerance=True)
         kept = replace(kept, keywords=(*kept.keywords, ("corrector", (standard,))))
     return kept, [
-        f"fix {line.id} {line.style}: {', '.join(left_out)} left out, for trials have steps of equal"
-        " length; what it costs to let the step follow the error is not measured"
+        f"fix {line.id} {line.style}: {', '.join(left_out)} left out, because trials have steps of equal"
+        " length; the cost of steps that change is not measured"
     ]
 
 
@@ -366,7 +366,7 @@ def translate(line):
 _RANDOM = "its forces are random, so the motion has no exact solution"
 _ATOMS = "it adds, removes or swaps atoms, so the motion has no exact solution"
 _STEPS = "it acts once in so many steps, so the motion changes with the time step"
-_BOX = "it changes the box, which fix gear/quat allows no other fix"
+_BOX = "it changes the box, and fix gear/quat does not allow other fixes to do so"
 _UNUSABLE = (
     (r"langevin.*|.*/langevin|brownian.*|bd/.*|gld|gle|temp/cs.*|srd|lb/.*|ttm.*|tfmc", _RANDOM),
     (r"shardlow|.*/dpd|dpd/.*|qtb|qbmsst|pimd.*|propel/self/.*|addtorque/random", _RANDOM),
