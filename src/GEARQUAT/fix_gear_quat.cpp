@@ -279,7 +279,7 @@ void FixGearQuat::final_integrate()
 }
 
 /// f, torque: from all pair styles and fixes in the previous step.  The first fix gear/quat in the
-/// list starts the bodies of all of them.
+/// list starts the bodies of all fixes gear/quat.
 void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
   if (motion_acts) {
@@ -389,8 +389,8 @@ void FixGearQuat::min_store()
   minimization->store();
 }
 
-/// Bodies need no degrees of freedom besides the ones of their atoms.  With a single one, which
-/// stays 0, LAMMPS calls min_energy() and min_store().
+/// A single degree of freedom, which stays 0: with it LAMMPS calls min_energy() and min_store().
+/// The minimizer moves bodies by the degrees of freedom of their atoms.
 int FixGearQuat::min_dof()
 {
   return 1;

@@ -88,7 +88,7 @@ struct Keyword {
     int fewest, most, standard;
     int standard_gear = 0;    ///< the default with corrector gear; 0: the same
   };
-  /// Another keyword that has to be given, or must not be; value: empty for any but "none".
+  /// Another keyword that is required or excluded; an empty value stands for any value but "none".
   struct Condition {
     std::string keyword, value;
     std::string reason;      ///< ends the error message, may be empty
@@ -118,7 +118,7 @@ struct Keyword {
   {
   }
 
-  // what the rows of the table are written with; an empty default is the first word
+  // functions for the rows of the table; an empty default stands for the first word
 
   Keyword &word(const std::vector<std::string> &possible, const std::string &default_word = "")
   {

@@ -269,7 +269,8 @@ class Chain {
       numbers.push_back(known);
       for (int i = 0; i < (int) known; ++i) numbers.insert(numbers.end(), {sums[i], ages[i]});
     }
-    /// Reads these from position `at`, which is advanced; none where the numbers end.
+    /// Reads these numbers from position `at`, which is advanced; there are no sums if the file
+    /// ends before.
     void take_sums(const std::vector<double> &numbers, size_t &at)
     {
       const int count = at < numbers.size() ? (int) numbers[at++] : 0;

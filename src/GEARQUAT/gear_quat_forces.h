@@ -3,7 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Forces at positions that are not steps: what the start-up needs of LAMMPS.
+/* Evaluation of LAMMPS' forces for the start-up.
 
    The start-up evaluates forces at positions between steps.  Followed: pair, bonded and kspace
    forces of styles that depend on positions and velocities only, and the post_force() of the fixes

@@ -428,8 +428,8 @@ void Sites::visit_constraint_forces(double **f, bool all, Turning turning,
           lacking[k] =
               mass * (acceleration.linear[k] + tangential[k] + radial[k]) - f[site.atom][k];
         for (int k = 0; k < 3; ++k) constraint.virial[k] = arm_space[k] * lacking[k];
-        // if forces act only at the center of mass, a torque remains, and the virial of a box that
-        // shears y into x and z into both differs from the one of the opposite shear
+        // if forces act only at the center of mass, a torque remains, and the virial is not
+        // symmetric: it depends on whether the box shears y into x (and z into both) or x into y
         const bool turns = turning == Turning::YES;
         const double *to = turns ? arm_space : lacking, *from = turns ? lacking : arm_space;
         constraint.virial[3] = to[0] * from[1];

@@ -275,7 +275,7 @@ class Collocation {
     for (int pairs = 0; pairs <= half; ++pairs) polynomial[pairs].make(pairs);
   }
 
-  /// Nodes on each side of the start, whose own forces are already known.
+  /// Number of nodes on each side of the start.  The forces at the start itself are already known.
   int pairs() const { return half; }
 
   /// Starts without pairs: constant second derivatives, taken from `series` (at least three terms,

@@ -173,7 +173,7 @@ def draw_deflection(path, name, columns, plan, units):
 
 
 def draw_convergence(path, name, shown):
-    """Values with standard errors, by their last ones, and the errors, against numbers of flights.
+    """Values with standard errors, divided by the last values, and the errors, against the number of flights.
 
     ``shown``: words for a condition -> what ``results.convergence`` returns, of one or two conditions.
     """

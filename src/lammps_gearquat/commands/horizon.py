@@ -55,7 +55,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
 )
 @failing_clearly(DeckError, LammpsError)
 def horizon(scene, time, thresholds, every, first, second, step_a, step_b, out):
-    """Measure until what time the trajectory of DECK can be trusted.
+    """Measure the time up to which the trajectory of DECK is accurate.
 
     The scene is run twice, at two accuracies.  The command reports when the two runs part, and the Lyapunov
     time if their difference grows exponentially.  Two formulations can be compared as well (--a, --b).

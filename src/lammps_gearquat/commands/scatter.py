@@ -159,7 +159,7 @@ def _refuse(given, names, why):
 
 
 def _settled(asked):
-    """``asked`` with its defaults.  Raises DeckError for what does not go together."""
+    """``asked`` with its defaults.  Raises DeckError for options that cannot be combined."""
     asked = asked | {"temperature": tuple(sorted(set(asked["temperature"])))}
     temperatures, energy, rotation = asked["temperature"], asked["energy"], asked["rotation"]
     if not temperatures and energy is None:

@@ -20,7 +20,7 @@ class Flight:
     relative velocity has turned, in radians.  ``time``, ``closest``, ``turnings``, ``steps``, ``repeats``, ``fate``
     and ``message`` as in ``pair.End``.  Errors are changes from the start to the end: ``error_energy`` by the
     energy at the start, ``error_momentum`` by the momentum of one body, ``error_angular`` by this momentum times
-    ``closest``.  Of flights that have not parted, what is ``_after`` and the angle are not a number.
+    ``closest``.  For flights that have not parted, the angle and the columns ``..._after`` are NaN.
     """
 
     flight: int

@@ -72,7 +72,7 @@ def reduced(facts, temperature, sigma):
 
 
 def derived(facts, temperature, sigma=None):
-    """Name -> (function of the means, unit, what it is) of all that applies to this pair; nothing without temperature."""
+    """Name -> (function of the means, unit, description) of all quantities that apply to this pair; empty without a temperature."""
     if temperature is None:
         return {}
     found = ratios()

@@ -10,7 +10,7 @@ Phys. Rev. 110, 1235 (1958)) the collision integrals are
 
     F_11 = x - (x y)^(1/2) cos chi,    F_12 = x F_11,    F_22 = x y sin^2 chi + 2 x d / 3.
 
-If rotation gains nothing, they reduce to the integrals of J. O. Hirschfelder, C. F. Curtiss and R. B. Bird, Molecular
+If no energy goes to rotation, they reduce to the integrals of J. O. Hirschfelder, C. F. Curtiss and R. B. Bird, Molecular
 Theory of Gases and Liquids, Wiley (1954), eq. (8.2-3), with F_ls = x^s (1 - cos^l chi).
 
 If rotation has the temperature of translation, then by detailed balance the mean of a function of x and y does not
@@ -49,7 +49,7 @@ ISOTROPIC = (2.0 / 3.0, 0.0)
 
 @dataclass(frozen=True)
 class Estimate:
-    """A ``value`` with its standard ``error``, in ``unit``; ``about`` says what it is."""
+    """A ``value`` with its standard ``error``, in ``unit``; ``about`` describes the quantity."""
 
     value: float
     error: float
@@ -108,7 +108,7 @@ def thermal_speed(facts, temperature):
 
 
 def integrands(columns, plan, facts, temperature):
-    """Name -> (integrand (n,), unit, what it is): their means over flights are the quantities.
+    """Name -> (integrand (n,), unit, description); the quantities are the means of the integrands over flights.
 
     ``temperature``, a temperature of the plan; None for one energy.
     """
@@ -165,7 +165,7 @@ class Averages:
 
     ``means`` (1 + R, m): the first row is from all flights; ``names`` (m,), in the same order.  ``shifts``: factors
     (m,),
-    one array for each systematic error; what they change adds to the standard errors.
+    one array for each systematic error; the changes of the results by these factors are added to the standard errors.
     """
 
     def __init__(self, numbers, found, finished=None, left=None):

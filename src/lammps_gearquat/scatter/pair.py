@@ -228,7 +228,7 @@ class Pair:
         return bool(same) and first == second
 
     def _prepare(self, log):
-        """Sets ``cutoff`` and ``reach``, and turns off what only costs time."""
+        """Sets ``cutoff`` and ``reach``, and turns off features that only cost time."""
         lammps = self.lammps
         lammps.commands_list(
             [

@@ -52,7 +52,7 @@ class Largest:
 class Cells:
     """The grid of the pilots: ``edges`` (D + 1,) of the shells; ``b`` and ``energy`` (D, L, A); ``width``, of a level
     in the
-    logarithm of the energy, 0 for one energy; ``random`` (D L A, m), for what else is drawn."""
+    logarithm of the energy, 0 for one energy; ``random`` (D L A, m): all other random numbers."""
 
     edges: np.ndarray
     b: np.ndarray
@@ -203,7 +203,7 @@ def taken_away(b, h, cutoff):
 def _nearest(left, edges, allowed, cutoff, gone):
     """The nearest edge beyond which at most ``allowed`` is left (D + 1, 3) of every loss.
 
-    ``gone``: words about pilots that have not parted.  Raises DeckError.
+    ``gone``: text about pilots that have not parted.  Raises DeckError.
     """
     if (left[-1] > allowed).any() and gone:
         raise DeckError(f"{gone}: the largest impact parameter cannot be found")
@@ -223,7 +223,7 @@ def _nearest(left, edges, allowed, cutoff, gone):
 
 
 def fit(places, lost, largest, scales):
-    """(s0, s1, p) of the density for which what pilots within ``largest`` have lost is most likely, with a safety factor.
+    """(s0, s1, p) of the density for which the losses of the pilots within ``largest`` are most likely, with a safety factor.
 
     A pilot counts with its part of the loss at its own energy, times the part of the loss that this level of energies has,
     of momentum and of viscosity.  ``scales`` (T,): kT of the temperatures.

@@ -1,4 +1,4 @@
-"""Flights on several processes, each with a LAMMPS of its own that reads the deck once.
+"""Simulates flights in several processes; each has its own LAMMPS, which reads the deck once.
 
 A flight depends on its number only, so the number of processes changes nothing but the time.
 """
@@ -73,7 +73,7 @@ def _answer(scene, asked, arguments, tell):
 class Pool:
     """Processes that simulate flights of the pair of a deck; use it in a with statement.
 
-    ``scene`` holds the arguments of ``open_pair``; ``most_steps``, after which a flight is given up.
+    ``scene`` holds the arguments of ``open_pair``; ``most_steps``, the largest number of steps of a flight.
     ``facts`` are the Facts.  Raises DeckError for decks that cannot be used, and LammpsError.
     """
 
@@ -132,7 +132,7 @@ class Pool:
                 future.cancel()
 
     def pilots(self, plan, advance):
-        """(Cells, columns) of the pilots of a Plan; ``advance(n)`` is told when n more of them have ended."""
+        """(Cells, columns) of the pilots of a Plan; ``advance(n)`` is called when n more flights have ended."""
         boltzmann = UNITS[self.facts.style].boltzmann
         places = cells(plan, self.facts.cutoff, boltzmann, self._submit(rotational).result())
         b, energy = places.b.ravel(), places.energy.ravel()

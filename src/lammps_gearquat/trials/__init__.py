@@ -1,4 +1,4 @@
-"""Short trials of any input script: the cost of accuracy, and the time until which a trajectory can be trusted.
+"""Short trials of any input script: the cost of accuracy, and the time up to which a trajectory is accurate.
 
 script          the commands of a deck: text in, text out
 interpreter     the deck's flow of commands, up to the run that moves its bodies

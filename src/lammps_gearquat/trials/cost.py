@@ -377,7 +377,7 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
     """Costs of a Deck, or its sampling.Sampling where many trajectories diverge and neither errors nor a time are given.
 
     ``budget``, a Budget that began before the deck was opened; ``errors`` in units of the deck
-    (radians for orientations; none: DECADES of the size of the bodies); ``time``, of the trials;
+    (radians for orientations; if empty, DECADES of the size of the bodies); ``time``, of the trials;
     ``tries``, keywords of fix gear/quat to try beside ``methods``; ``bound``, the largest energy drift of a
     recommended step, in kT per degree of freedom and ns.  Raises DeckError where nothing can
     be measured.

@@ -35,7 +35,7 @@ class Drift:
     the kT of the mean kinetic energy.  Both are NaN if they are unknown, and then ``reason`` says why.
     ``failure`` is the error that ended a run, if there was one, and ``gone`` whether it was that bodies left the box.
     ``difference``, Estimate of T translation - T rotation in kelvin, and ``temperature``, their mean, likewise.
-    ``bound``: what ``rate`` may be.
+    ``bound``: the largest ``rate`` that is allowed.
     """
 
     rate: float = math.nan

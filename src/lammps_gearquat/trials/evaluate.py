@@ -63,7 +63,7 @@ CLOSE = 1.1
 
 
 def usable_step(dt):
-    """A time step cut to two digits, downwards, for a script: what is left is more than dt / CLOSE."""
+    """A time step rounded down to two digits, for a script; the result is above dt / CLOSE."""
     unit = 10.0 ** (math.floor(math.log10(dt)) - 1)
     return float(f"{math.floor(dt / unit * (1 + 1e-9)) * unit:.2g}")
 

@@ -13,7 +13,7 @@ _GONE = re.compile(
 def explained(message, deck, dt, reached=None):
     """``message`` of a trial of ``deck`` with step ``dt``, with its cause where that is known.
 
-    ``reached``: the time up to which this trial and others like it are known to have gone well, None if it is not known.
+    ``reached``: the time up to which this trial and similar trials ran without an error, None if it is not known.
     """
     if not _GONE.search(message):
         return message

@@ -40,7 +40,7 @@ class Command:
     ``mover`` is the FixLine if it defines a fix that moves bodies, and ``in_use`` whether later
     commands needed that very fix; ``modifies`` is the ID of such a fix in a fix_modify command.
     Of a command that moves atoms, ``state`` is the prefix of the files with the state it led to;
-    it is ``superseded`` if nothing looked at that state before the next such command.
+    it is ``superseded`` if no command used that state before the next such command.
     """
 
     text: str

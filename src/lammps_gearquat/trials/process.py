@@ -39,7 +39,7 @@ TEST_STEPS = 10
 
 # --- LAMMPS ---------------------------------------------------------------------------------------
 def open_lammps(deck, variables, log):
-    """LAMMPS in the folder of the deck, silent but for its log."""
+    """LAMMPS in the folder of the deck, without output except its log."""
     os.chdir(deck.parent)
     return open_library(variables, log)
 
@@ -207,7 +207,7 @@ def _warnings(text):
 
 
 def _end_with_caller(file):
-    """End this process, whatever LAMMPS is doing, once the other end of its connection is closed."""
+    """End this process as soon as the other end of its connection is closed, even if LAMMPS is running."""
     watch = select.poll()
     watch.register(file, getattr(select, "POLLRDHUP", 0))  # POLLHUP is always reported
     watch.poll()
@@ -215,7 +215,7 @@ def _end_with_caller(file):
 
 
 def serve(address):
-    """Answer requests (function, arguments) until the other side is gone."""
+    """Answer requests (function, arguments) until the connection is closed."""
     os.environ["OMP_NUM_THREADS"] = "1"
     connection = Client(address, "AF_UNIX")
     threading.Thread(target=_end_with_caller, args=(connection.fileno(),), daemon=True).start()

@@ -7,7 +7,7 @@ rotation have the same temperature.
    and of the deck's own fix: from the longest known step upwards, until one drifts.
 2. Longer runs of the cheapest step that may meet the bound.  If it does not, the next shorter step is tried, unless
    another method is cheaper then.
-3. The deck as it is, for as long, to compare with.
+3. The deck as it is, for the same time, for comparison.
 """
 
 import math

@@ -325,7 +325,7 @@ def closest(line):
 def translate(line):
     """The same bodies for fix gear/quat: (FixLine with keywords about bodies and physics, notes).
 
-    Raises DeckError for what fix gear/quat does not have.
+    Raises DeckError for keywords that fix gear/quat does not have.
     """
     if line.style == "gear/quat":
         return line.only(*_PHYSICAL), []

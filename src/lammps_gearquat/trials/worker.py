@@ -85,7 +85,7 @@ def _drain(connection):
 
 
 class Worker:
-    """Processes that run LAMMPS; they are restarted when they are gone, until ``end``.
+    """Processes that run LAMMPS; those that have ended are restarted, until ``end``.
 
     ``folder``, whose path has to be short, is for a socket.  ``environment``: None for the environment of
     this process; ``launcher``: the words before the number of ranks, by default for the MPI beside Python or on the
