@@ -69,7 +69,7 @@ class Sites : protected Pointers {
   // site: one of this list
   Expected expected_position(const Site &site) const;
   Expected expected_velocity(const Site &site) const;
-  /// Unwrapped positions: of the atom, and from its body.
+  /// Unwrapped positions: the one of the atom, and the one computed from its body.
   void unwrapped(const Site &site, double *found, double *expected) const;
   // True if position or velocity of the atom match its body, up to rounding.
   bool is_there(const Site &site) const;

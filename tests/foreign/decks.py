@@ -53,7 +53,7 @@ REASONS = (
     (
         r"changes the box without informing other fixes",
         "box that changes untold",
-        r"unless they tell no other fix of it",
+        r"do not inform other fixes of the change",
     ),
     (
         r"is in (?:both )?groups?|in two groups|more than one",
@@ -73,12 +73,12 @@ REASONS = (
         r"\*STYLE\*",
     ),
     (
-        r"\(lb/viscous\) exchanges an impulse",
+        r"\(lb/viscous\) exchanges momentum",
         "impulses of a lattice Boltzmann fluid",
         r"\*lb/viscous\*\s+- refused",
     ),
     (
-        r"plugin was compiled for lacks the headers",
+        r"compiled without the headers for that",
         "shapes, in a plug-in",
         r"Ellipsoids, lines and triangles need headers",
     ),

@@ -60,7 +60,7 @@ def test_a_step_that_is_too_long_is_told(make_deck):
         assert explained("values: 99 is not from 4 to 12", deck, 0.1) == "values: 99 is not from 4 to 12"
     assert said.startswith("after t = 0.3, atoms moved so far in a step of 0.1 that LAMMPS lost")
     assert "a step of 0.004 (as in the script) or shorter" in said and said.endswith("(LAMMPS: Lost atoms: original 9 current 8)")
-    assert "lmp -in in.clumps has to reach" in own
+    assert "until lmp -in in.clumps reaches this time" in own
 
 
 # --- signals ------------------------------------------------------------------------------------------
