@@ -142,7 +142,7 @@ def said(make_deck):
 
 def test_a_step_that_drifts_is_not_recommended(said):
     text = said(Drift(5.83, 0.31, 40.0))
-    assert "Not recommended: gear/quat values 7, timestep 3.8, for the energy drifts by 5.83 ± 0.31" in text and "over 40" in text
+    assert "Not recommended: gear/quat values 7, timestep 3.8, because the energy drifts by 5.83 ± 0.31" in text and "over 40" in text
     assert "To measure" not in text and "WARNING" not in text
 
 

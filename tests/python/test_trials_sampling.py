@@ -154,7 +154,7 @@ def test_where_nothing_holds_that_is_said_with_the_smallest_drift(monkeypatch):
     found = answer_of(monkeypatch, MadeUpLiquid(lambda keywords, dt: 0.7 + 0.1 * dt + (keywords != "")))
     assert found.recommended is None and found.choice is None
     text = sampling_report.text(MadeUpLiquid(steep), found)
-    assert "Nothing is recommended: no step is known to hold the bound of 0.1 kT/ns/dof" in text
+    assert "Nothing is recommended: no step is known to keep the drift below 0.1 kT/ns/dof" in text
     assert found.least.keywords == "" and f"timestep {found.least.dt:g}" in text.split("The smallest drift seen is")[1]
     assert abs(found.least.drift.rate - 0.7 - 0.1 * found.least.dt) < 5 * found.least.drift.error
 

@@ -23,5 +23,5 @@ def _optional(name):
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
-        message = f"this needs {name}, which comes with the extra [frames] of gearquat-analysis: pip install {name}"
+        message = f"this function requires {name}, which comes with the extra [frames] of gearquat-analysis: pip install {name}"
         raise ModuleNotFoundError(message, name=name) from error

@@ -23,7 +23,7 @@ first order in d cancels:
 The mean of this F_22 equals the mean of x^2 sin^2 chi + d^2 / 3 - d^2 sin^2 chi / 2, the form of L. Monchick, K. S.
 Yun and E. A. Mason, J. Chem. Phys. 39, 654 (1963).
 
-Flights that have not parted count as if they had left in all directions alike, without transfer of energy.  Errors
+Flights that have not parted count as isotropic scattering without transfer of energy.  Errors
 include all contributions of these flights, and the part beyond the largest impact parameter.
 """
 

@@ -44,8 +44,8 @@ def text(facts, plan, farthest, found):
         if numbers:
             more = "" if len(numbers) <= NAMED else f" and {len(numbers) - NAMED} more"
             lines.append(
-                f"{fate.capitalize()}: {', '.join(map(str, numbers[:NAMED]))}{more}; averages count them as if they"
-                " had left in all directions alike, without transfer of energy, and errors include all that they count"
+                f"{fate.capitalize()}: {', '.join(map(str, numbers[:NAMED]))}{more}; averages treat them as isotropic"
+                " scattering without transfer of energy, and errors include their whole contribution"
             )
     return "\n".join(lines)
 
@@ -89,11 +89,12 @@ def _distance(farthest, unit):
     words, left = f"Largest impact parameter: {f'{farthest.value:g} {unit}'.strip()}", farthest.highest()
     if left is None:
         return (
-            f"{words}; what is beyond it is not in the averages, and not in all errors: losses do not decay towards the"
-            " cutoff, so it is not known"
+            f"{words}; the part beyond it is not known, because losses do not decay towards the cutoff, and is included"
+            " neither in the averages nor in all errors"
         )
     return (
-        f"{words}; what is beyond it is {left:.1e} of the whole, by {farthest.pilots} pilot flights, and errors include it"
+        f"{words}; the part beyond it is {left:.1e} of the loss, according to {farthest.pilots} pilot flights, and errors"
+        " include it"
     )
 
 

@@ -324,7 +324,7 @@ class Inquiry:
             if rungs and keywords is not None:  # the next method begins in the middle
                 gear_steps = min(rungs, key=lambda steps: abs(math.log(rungs[steps] + 1e-300) - middle))
             if not rungs and keywords in self.failures:
-                costs.notes.append(f"no trial of {named(keywords)} came to its end: {self.failures[keywords]}")
+                costs.notes.append(f"no trial of {named(keywords)} ended without an error: {self.failures[keywords]}")
 
     # --- 3. the steps between -------------------------------------------------------------------------
     def refine(self, costs, errors):

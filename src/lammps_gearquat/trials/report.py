@@ -96,7 +96,7 @@ def _drift_lines(deck, costs):
         name = f"{named(keywords)}, timestep {dt:g}"
         measured = f"{_drift(deck, found)} over {_quantity(found.time, deck.time_unit)}"
         if found.drifts:
-            lines.append(f"Not recommended: {name}, for the energy drifts by {measured}.")
+            lines.append(f"Not recommended: {name}, because the energy drifts by {measured}.")
         elif found.failure:
             beginning = "Not recommended" if found.fails else "WARNING"
             lines += [
@@ -186,7 +186,7 @@ def _script_lines(deck, costs):
             lines.append(f"No trial within the budget had an error of {row.error:.1e}: {remedy}")
             if row.own:
                 lines.append(f"    Your own fix would need timestep {rounded(row.own.dt, 2)}, as extrapolated.")
-    return lines or ["None of the errors can be judged: try --budget, a shorter --time or a larger --error."]
+    return lines or ["None of the errors can be judged: try a longer --budget, a shorter --time or a larger --error."]
 
 
 def _refused(costs):
@@ -201,8 +201,8 @@ def _nothing_holds(deck, costs, rows):
         return []
     errors = ", ".join(f"{row.error:.1e}" for row in rows)
     lines = [
-        f"Nothing is recommended for an error of {errors}: no step that reaches it holds the bound of {costs.bound:g}"
-        f" {_drift_unit(deck)} (--drift)."
+        f"Nothing is recommended for an error of {errors}: no step that reaches it has a drift below"
+        f" {costs.bound:g} {_drift_unit(deck)} (--drift)."
     ]
     known = {pair: found for pair, found in costs.drifts.items() if found.known}
     if known:
@@ -266,9 +266,9 @@ def horizon_text(deck, horizon):
         spread = growth.lyapunov_time * growth.error / growth.rate
         lyapunov = with_error(growth.lyapunov_time, spread, time)
         lines.append(
-            f"The Lyapunov time is {lyapunov}: the difference"
-            f" grows by a factor of e in it, fitted from t = {growth.begin:g} to {growth.end:g}, where the"
-            f" exponential grows {rounded(growth.factor, 1)} times."
+            f"The Lyapunov time, in which the difference grows by a factor of e, is {lyapunov}. It was fitted from"
+            f" t = {growth.begin:g} to {growth.end:g}, where the exponential grows by a factor of"
+            f" {rounded(growth.factor, 1)}."
         )
     return "\n".join(lines)
 

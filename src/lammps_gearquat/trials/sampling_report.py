@@ -82,7 +82,7 @@ def _advice(deck, answer):
             *(f"    {line}" for line in [*lines, *deck.fix_lines(choice.keywords), f"timestep {choice.dt:g}"]),
             *longer,
         ]
-    lines = [f"Nothing is recommended: no step is known to hold the bound of {answer.bound:g} {unit} (--drift)."]
+    lines = [f"Nothing is recommended: no step is known to keep the drift below {answer.bound:g} {unit} (--drift)."]
     least = answer.least
     if least:
         lines.append(
@@ -102,7 +102,7 @@ def _longer(deck, answer):
     if math.isnan(answer.enough):
         return []
     what = f"A run of {_quantity(drift.longest(deck), deck.time_unit)}" if answer.choice else "A run that is long enough to tell"
-    return [f"{what} needs --budget {rounded(answer.enough, 2)} or more, as far as trials show."]
+    return [f"{what} needs --budget {rounded(answer.enough, 2)} or more, according to the trials."]
 
 
 def _failures(answer):

@@ -268,7 +268,7 @@ def parse_fix(words):
     if rest and rest[0] == "group" and len(rest) > 1 and rest[1].isdigit():
         length = 2 + int(rest[1])
     if not length or len(rest) < length:
-        raise DeckError(f"{who}: cannot make out which bodies: {' '.join(rest)}")
+        raise DeckError(f"{who}: cannot determine the bodies: {' '.join(rest)}")
     known, options = RIGID_KEYWORDS, {}
     if style == "gear/quat":
         known = {key: row.arguments for key, row in keywords.table().items()}
@@ -335,7 +335,7 @@ def translate(line):
         why = "its barostat has other equations" if of_box else "its thermostat counts other degrees of freedom"
         raise DeckError(
             f"{who}: {why} than keyword {min(of_box, default='temp')} of fix gear/quat, so"
-            " the two move the bodies differently, and the difference is no error. Steps and orders at"
+            " the two fixes move the bodies differently, and the difference is not an error. Steps and orders at"
             f" constant {'pressure' if of_box else 'temperature'} can be compared in a deck with\n  {closest(line).text()}"
         )
     if style not in RIGID:
@@ -365,7 +365,7 @@ def translate(line):
 # --- what leaves no trajectory to compare ---------------------------------------------------------
 _RANDOM = "its forces are random, so the motion has no exact solution"
 _ATOMS = "it adds, removes or swaps atoms, so the motion has no exact solution"
-_STEPS = "it acts once in so many steps, so the motion changes with the time step"
+_STEPS = "it acts only every few steps, so the motion depends on the time step"
 _BOX = "it changes the box, and fix gear/quat does not allow other fixes to do so"
 _UNUSABLE = (
     (r"langevin.*|.*/langevin|brownian.*|bd/.*|gld|gle|temp/cs.*|srd|lb/.*|ttm.*|tfmc", _RANDOM),
