@@ -235,7 +235,7 @@ def test_flights_that_never_part_are_named(tmp_path):
     deck, out = colliding.write(tmp_path), tmp_path / "out"
     output = run(deck, out, *WHOLE, "--count", "64", "--steps", "435")
     counts = json.loads((out / "results.json").read_text())["flights"]
-    assert 0 < counts["unparted"] < 32 and "Unparted: " in output and "errors include all that they count" in output
+    assert 0 < counts["unparted"] < 32 and "Unparted: " in output and "errors include their whole contribution" in output
     result = CliRunner().invoke(main, ["scatter", str(deck), "--out", str(out), *WHOLE, "--steps", "435", "--error", "1e-3"])
     assert result.exit_code == 1 and "more --steps are required, with another --out" in " ".join(result.output.split())
 
