@@ -99,7 +99,7 @@ def test_table_of_averages(poses):
 @pytest.mark.parametrize(("package", "export"), [("pandas", "to_dataframe"), ("xarray", "to_xarray")])
 def test_without_the_package_it_is_named(poses, monkeypatch, package, export):
     monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(ModuleNotFoundError, match=rf"needs {package}, which comes with the extra \[frames\]"):
+    with pytest.raises(ModuleNotFoundError, match=rf"requires {package}, which comes with the extra \[frames\]"):
         getattr(poses, export)()
 
 
