@@ -234,9 +234,9 @@ std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
   if (!torn) return changed;
   if (end)
     error->all(FLERR,
-               "Fix gear/quat: the velocities that {} gave to atoms of body {} in step {} are not "
-               "those of a rigid motion; whole bodies have to be in the group, without a region or "
-               "a bias that divides them",
+               "Fix gear/quat: the velocities that {} gave to atoms of body {} in step {} do not "
+               "form a rigid motion; whole bodies have to be in the group, without a region or a "
+               "bias that divides them",
                names(acted), torn, step);
   bodies.put_back_states(before);
   ownership.spread_states();

@@ -304,7 +304,7 @@ class FrictionLimit {
  private:
   static constexpr double LEAST = 0.02, RATIO = 1.05;
   static constexpr int HALVINGS = 8;
-  // powers of the map up to 2^16; those of a stable map grow at most by this factor
+  // powers of the map up to 2^16; the powers of a stable map grow at most by this factor
   static constexpr int SQUARINGS = 16;
   static constexpr double TRANSIENT = 1.0e6;
 

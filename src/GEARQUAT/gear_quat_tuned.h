@@ -67,7 +67,7 @@ enum class Columns { DRIVEN, INTEGRATED };
 /// Steady deviations of the rows, for coefficients of an equation of order q = 1 or 2.
 class SteadyDeviations {
  public:
-  /// c: N coefficients; only those from row q on are used.
+  /// c: N coefficients, used from row q on.
   SteadyDeviations(int q, const std::vector<long double> &c) :
       q(q), n((int) c.size()), residual(n / c[n - 1]), e(descend(c, n, residual, {}))
   {

@@ -190,7 +190,7 @@ def _script_lines(deck, costs):
 
 
 def _refused(costs):
-    """The drifts because of which a step is not recommended."""
+    """The drifts of the steps that are not recommended because of their drift."""
     return {pair: found for pair, found in costs.drifts.items() if found.refused}
 
 
