@@ -295,6 +295,7 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 void FixGearQuat::end_step(double **f, double **torque)
 {
   step->end(f, torque);
+  motion->look_at_vibrations();
   driven_box->end_step();
   if (box_change != NO_BOX_CHANGE) ownership->note_box();
   if (step->shows_local_data()) show_bodies();

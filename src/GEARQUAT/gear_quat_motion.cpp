@@ -42,7 +42,7 @@ Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, const Fleet &fleet,
                Ownership &ownership, Sites &sites, OtherFixes &others, Step &step) :
     Pointers(lmp),
     fix(fix), args(args), fleet(fleet), bodies(bodies), ownership(ownership), sites(sites),
-    others(others), step(step)
+    others(others), step(step), vibrations(lmp, bodies)
 {
 }
 
@@ -97,6 +97,7 @@ void Motion::begin_run()
   if (step.coupling)
     step.coupling->begin_run(!step.started, step.tolerance ? std::min(h, longest_step()) : h);
   if (step.tolerance) step.tolerance->announce_output();
+  vibrations.begin_run();
   set_up = true;
 }
 

@@ -65,6 +65,8 @@ Scheme Motion::choose_scheme(const MotionSums &here)
   const ChoiceOfValues::Choice choice = scene.choose(args.scheme);
   edge_rate = scene.edge / std::fabs(step.length());
   tell_choice(scene, choice);
+  warn_of_vibrations(scene, choice.scheme, true);
+  warned_values = false;
   step.set_scheme(choice.scheme);
   return choice.scheme;
 }
@@ -95,14 +97,52 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
   const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
   utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
                  other_corrector ? " and corrector gear" : "", why);
-  if (scene.too_long(choice.scheme))
-    error->warning(
-        FLERR,
-        "Fix gear/quat {}: vibrations of {:.2g} and rotations of {:.2g} radians in a step are more "
-        "than any number of values can follow for long; use a time step of {:g} or shorter, or, if "
-        "atoms overlap, begin with a run with keywords tolerance and temp",
-        fix->id, scene.edge, scene.turn,
-        rounded_down(std::fabs(step.length()) * scene.advised_part(choice.scheme)));
+}
+
+/// Once, and again if only a much shorter step is short enough.
+void Motion::warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins)
+{
+  const double advised = std::fabs(step.length()) * scene.advised_part(scheme);
+  if (!scene.too_long(scheme) || advised * ChoiceOfValues::BAND > advised_step) return;
+  advised_step = advised;
+  if (comm->me != 0) return;
+  error->warning(
+      FLERR,
+      "Fix gear/quat {}: {}vibrations of {:.2g} and rotations of {:.2g} radians in a step are more "
+      "than any number of values can follow for long; use a time step of {:g} or shorter{}",
+      fix->id, begins ? "" : fmt::format("at step {} ", update->ntimestep), scene.edge, scene.turn,
+      rounded_down(advised),
+      begins ? ", or, if atoms overlap, begin with a run with keywords tolerance and temp" : "");
+}
+
+void Motion::look_at_vibrations()
+{
+  if (!args.automatic_values || step.tolerance || !vibrations.note_step(step.length())) return;
+  ChoiceOfValues scene = scene_of(vibrations.sums());
+  scene.edge = MotionSums::true_edge(scene.edge);
+  if (!scene.exact) return;
+  if (scene.too_long(step.scheme()))
+    warn_of_vibrations(scene, step.scheme(), false);
+  else
+    warn_of_values(scene);
+}
+
+/// Once for the histories, which keep their number of values.
+void Motion::warn_of_values(const ChoiceOfValues &scene)
+{
+  const int present = step.scheme().values();
+  const ChoiceOfValues::Choice suits = scene.choose(args.scheme, present);
+  if (warned_values || suits.reason != ChoiceOfValues::Reason::MOTION ||
+      suits.scheme.values() >= present)
+    return;
+  warned_values = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat {}: at step {} vibrations of {:.2g} and rotations of {:.2g} "
+                   "radians in a step require {} values, but histories began with {} for a slower "
+                   "motion; use keyword values {}, or define the fix anew before the next run",
+                   fix->id, update->ntimestep, scene.edge, scene.turn, suits.scheme.values(),
+                   present, suits.scheme.values());
 }
 
 /// Measures the damping of momenta by forces in a step.  f: the forces of all fixes.  Collective.
