@@ -164,6 +164,7 @@ void Motion::begin_steps(const Fleet &fleet, double **f, double **torque)
   start_together(full, needed);
   for (const auto &one : fleet.members) {
     one.motion->tell_friction();
+    one.motion->warn_of_single_pass();
     one.motion->next_look = 0;
   }
 }
@@ -322,6 +323,9 @@ void Motion::begin(bool full)
 {
   step.started = true;
   resumed = false;
+  // after the checks of the start, since an error of a coupling may have the same cause
+  if (chosen) warn_of_vibrations(*chosen, step.scheme(), true);
+  chosen.reset();
   if (!step.tolerance) return;
   step.tolerance->begin(full);
   step.make_integrator();

@@ -14,6 +14,7 @@
 #include "gear_quat_vibrations.h"
 
 #include <map>
+#include <optional>
 #include <string>
 
 namespace LAMMPS_NS::GearQuat {
@@ -100,7 +101,9 @@ class Motion : protected Pointers {
   ChoiceOfValues scene_of_start(const MotionSums &here) const;
   double edge_rate = 0.0;    ///< fast edge divided by the step, when the number was chosen
   Vibrations vibrations;
-  double advised_step = HUGE_VAL;    ///< by the last warning about vibrations
+  double advised_step = HUGE_VAL;          ///< by the last warning about vibrations
+  std::optional<ChoiceOfValues> chosen;    ///< input to the choice of a start that has not ended
+  bool warned_pass = false;
   bool warned_values = false;
   double damping = 0.0;    ///< part of a momentum that is damped by forces in a step
   void measure_friction(double **f);
@@ -112,6 +115,7 @@ class Motion : protected Pointers {
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
   void warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins);
   void warn_of_values(const ChoiceOfValues &scene);
+  void warn_of_single_pass();
   const char *another_scheme_suits();
   std::string words_of_scheme() const;
   /// True if a start finds all derivatives, as far as it can.
