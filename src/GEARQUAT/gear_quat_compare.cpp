@@ -319,7 +319,7 @@ bool Sites::match_bodies() const
         FLERR,
         "Fix gear/quat: atoms of body {} were moved relative to each other since the fix "
         "was defined or last ran, as by displace_atoms or set on single atoms; the body "
-        "is made anew with this other shape",
+        "is made again with this other shape",
         found.reshaped);
   return !any && !found.mass_changed;
 }

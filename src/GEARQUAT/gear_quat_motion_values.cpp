@@ -141,7 +141,7 @@ void Motion::warn_of_values(const ChoiceOfValues &scene)
     error->warning(FLERR,
                    "Fix gear/quat {}: at step {} vibrations of {:.2g} and rotations of {:.2g} "
                    "radians in a step require {} values, but histories began with {} for a slower "
-                   "motion; use keyword values {}, or define the fix anew before the next run",
+                   "motion; use keyword values {}, or define the fix again before the next run",
                    fix->id, update->ntimestep, scene.edge, scene.turn, suits.scheme.values(),
                    present, suits.scheme.values());
 }
