@@ -201,13 +201,16 @@ void FixGearQuat::setup_pre_neighbor()
   update_bodies();
   if (met_atoms && !minimization->is_on()) motion->take_velocities(update->ntimestep, false);
   const bool from_atoms = args->infile.empty() && !any_differs(stated);
-  if (from_atoms && (args->reinit || !met_atoms) && !sites->match_bodies()) {
+  const bool takes_over = from_atoms && (args->reinit || !met_atoms);
+  if (!takes_over && !minimization->is_on()) sites->warn_of_other_places();
+  if (takes_over && !sites->match_bodies()) {
     ownership->recreate();
     update_bodies();
     motion->forget("Fix gear/quat: atoms were changed since the last run, bodies start anew from "
                    "them");
   }
   ownership->note_box();
+  if (!told_of_ids) told_of_ids = warn_of_molecule_ids(lmp, this, *args, *ownership);
   motion->impose_masks();
   met_atoms = true;
   step->note_comparison();
@@ -295,6 +298,7 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 void FixGearQuat::end_step(double **f, double **torque)
 {
   step->end(f, torque);
+  motion->look_at_vibrations();
   driven_box->end_step();
   if (box_change != NO_BOX_CHANGE) ownership->note_box();
   if (step->shows_local_data()) show_bodies();

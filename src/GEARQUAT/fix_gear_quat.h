@@ -124,6 +124,7 @@ class FixGearQuat : public Fix {
   std::vector<GearQuat::StatedMolecule> stated;    // by molecules of the template
 
   bool met_atoms = false;        // bodies were compared with the atoms in a run before
+  bool told_of_ids = false;      ///< of changed molecule IDs
   bool reported = false;         // the scene, once
   bool min_projected = false;    // forces, before the first evaluation of a minimization
   int min_vflag = 0;             // of the present evaluation in a minimization

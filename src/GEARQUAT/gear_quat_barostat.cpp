@@ -325,14 +325,45 @@ void Barostat::find_friction(const Integrator &integrator, int pass)
   note_box();
 }
 
+/// At the present poses and in their box.
+void Barostat::note_drive()
+{
+  const Upper now = drive();
+  for (int k = 0; k < Upper::SIZE; ++k)
+    if (std::isfinite(now[k])) strongest[k] = std::max(strongest[k], std::fabs(now[k]));
+}
+
+/// A damping time with which the strongest drive of this run does not change the box too much in a
+/// step.  A drive d causes a strain rate of sqrt(2 d) until the box has changed by its own size, and
+/// of d/omega in an oscillation with this angular frequency, 0 if it is not known.  Both rates are
+/// proportional to 1/Pdamp.
+double Barostat::period_for_drive(double omega) const
+{
+  constexpr double MARGIN = 1.3;    // the oscillation is not harmonic
+  double needed = 0.0;
+  for (int k = 0; k < Upper::SIZE; ++k) {
+    if (!asked.on[k]) continue;
+    const double most = std::sqrt(2.0 * strongest[k]);
+    const double rate = omega > 0.0 ? std::min(most, MARGIN * strongest[k] / omega) : most;
+    needed = std::max(needed, 1.05 * asked.period[k] * rate * std::fabs(width) / IN_A_STEP);
+  }
+  return rounded_up(needed);
+}
+
+/// The shortest damping time of a box that oscillates too fast.
+double Barostat::period_for_box(double h) const
+{
+  return std::max(frequency.needed_period(h), period_for_drive(frequency.value()));
+}
+
 void Barostat::advance_box(double h, int values)
 {
   const double twice = twice_kinetic_of_box();
   if (!std::isfinite(twice) || chain.advance(target_of_box(-1.0, h), twice, h, values)) return;
   error->all(FLERR,
              "Fix gear/quat: in step {} the box moves so fast that its thermostat cannot follow; "
-             "begin nearer to the target pressure, or use a longer Pdamp",
-             update->ntimestep);
+             "begin nearer to the target pressure, or use a Pdamp of {:.2g} or longer",
+             update->ntimestep, std::max(period_for_drive(0.0), rounded_up(1.05 * period())));
 }
 
 /// scaled_velocity: M^-1 v

@@ -142,8 +142,10 @@ class Barostat : public Thermostat {
 
   BoxFrequency frequency;
   bool warned_box = false, warned_mesh = false;
-  Upper drive_of_smaller;           ///< in the start, before the box is enlarged
-  Upper begun_box, begun_matrix;    ///< the box of LAMMPS, and M, where the run began
+  static constexpr double IN_A_STEP = 0.03;    ///< limit for the change of the box in a step
+  Upper strongest;                             ///< drive in this run, as magnitudes
+  Upper drive_of_smaller;                      ///< in the start, before the box is enlarged
+  Upper begun_box, begun_matrix;               ///< the box of LAMMPS, and M, where the run began
 
   // the start
 
@@ -172,6 +174,9 @@ class Barostat : public Thermostat {
   void warn_of_box(const std::string &when, double h);
   void watch_mesh();
   void refuse_box() const;
+  void note_drive();
+  double period_for_drive(double omega) const;
+  double period_for_box(double h) const;
   void set_heat(const Scheme &scheme);
   void advance_box(double h, int values);
   double mode_of_box() const;

@@ -127,6 +127,7 @@ void Barostat::begin_run(bool begins, double h)
   std::copy_n(domain->prd, 3, begun_box.m.begin());
   begun_matrix = matrix;
   frequency.begin_run();
+  strongest = Upper();
   warned_mesh = false;
   virial.request(update->ntimestep + 1);
 }
@@ -172,6 +173,7 @@ void Barostat::begin_start(const StartNodes &nodes)
     held_box =
         chain.is_stiff(target_of_box(0.0, nodes.h), twice, nodes.h, nodes.collocation.pairs());
   }
+  note_drive();
   friction_of_box = friction_now();
   const Upper second = CellHistory::acceleration(matrix, rate, drive(), friction_of_box);
   nodes.collocation.begin<Upper::SIZE>(matrix.m.data(), (rate * matrix).scaled(s).m.data(),
@@ -251,6 +253,7 @@ void Barostat::seed_local(double h, int terms)
 {
   Thermostat::seed_local(h, terms);
   if (chain_acts()) chain.begin_settled(target_of_box(0.0, h), twice_kinetic_of_box(), h);
+  note_drive();
   friction_of_box = friction_now();
   const Upper second = CellHistory::acceleration(matrix, rate, drive(), friction_of_box);
   Upper series[3] = {matrix, (rate * matrix).scaled(h), second.scaled(0.5 * h * h)};
@@ -270,9 +273,9 @@ void Barostat::seed_local(double h, int terms)
 
 static constexpr double OF_MESH = 0.15;
 
-// limits for the change of the box in a step, and for the change of its shape under unequal targets
+// limits for the change of the shape of the box under unequal targets
 
-static constexpr double IN_A_STEP = 0.03, IN_SHAPE = 4.0, OF_HEIGHT = 2.0;
+static constexpr double IN_SHAPE = 4.0, OF_HEIGHT = 2.0;
 
 /// Strain for measuring the dependence of the pressure on the box at constant scaled centers:
 /// positions change by less than a tenth of the neighbor skin.
@@ -310,7 +313,7 @@ void Barostat::leave_probe(int side)
     error->all(FLERR,
                "Fix gear/quat: the box would oscillate by {:.2g} radians in a step, and the method "
                "follows {:.2g}; use a Pdamp of {:.2g} or longer",
-               radians, frequency.followed(), frequency.needed_period(width));
+               radians, frequency.followed(), period_for_box(width));
   warn_of_box("", width);
 }
 
@@ -322,8 +325,7 @@ void Barostat::warn_of_box(const std::string &when, double h)
     error->warning(FLERR,
                    "Fix gear/quat: {}the box oscillates by {:.2g} radians in a step, {:.0f} % of "
                    "what the method follows; use a Pdamp of {:.2g} or longer",
-                   when, frequency.radians(h), 100.0 * frequency.part(h),
-                   frequency.needed_period(h));
+                   when, frequency.radians(h), 100.0 * frequency.part(h), period_for_box(h));
 }
 
 double Barostat::longest_step() const
@@ -334,6 +336,7 @@ double Barostat::longest_step() const
 void Barostat::watch_box(double h)
 {
   frequency.note(drive(), rate, masses(), h);
+  note_drive();
   watch_mesh();
   if (warned_box || changing_step || !frequency.is_settled()) return;
   if (frequency.part(h) >= BoxFrequency::WARNED)
@@ -379,9 +382,10 @@ void Barostat::refuse_box() const
       error->all(
           FLERR,
           "Fix gear/quat: in step {} the box would change its length along {} from {:.4g} by "
-          "the factor {:.3g}; begin nearer to the target pressure, or use a longer Pdamp "
-          "than {:g}, unless a fluid tears under a target that is negative or too small",
-          update->ntimestep, "xyz"[k], domain -> prd[k], ratio, period());
+          "the factor {:.3g}; begin nearer to the target pressure, or use a Pdamp of {:.2g} or "
+          "longer, unless a fluid tears under a target that is negative or too small",
+          update->ntimestep, "xyz"[k], domain -> prd[k], ratio,
+          std::max(period_for_drive(0.0), rounded_up(1.05 * period())));
   }
   double deviates = 0.0;
   const double mean = mean_target(target);

@@ -12,6 +12,7 @@
 #define LMP_GEAR_QUAT_BOX_FREQUENCY_H
 
 #include "gear_quat_cell.h"
+#include "gear_quat_limits.h"
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -63,8 +64,8 @@ class BoxFrequency {
   {
     return value() > 0.0 ? 0.5 * WARNED * fastest / value() : HUGE_VAL;
   }
-  /// The shortest damping time without a warning.
-  double needed_period(double h) const { return 1.05 * period * part(h) / WARNED; }
+  /// A damping time without a warning, rounded up.
+  double needed_period(double h) const { return rounded_up(1.05 * period * part(h) / WARNED); }
 
  private:
   static constexpr double MEMORY = 2.0;    // damping times

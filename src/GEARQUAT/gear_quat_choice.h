@@ -28,6 +28,7 @@
 #include "gear_quat_startup.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -61,6 +62,31 @@ class MotionSums {
       sums[3] += body.inertia[k] * state.omega_body[k] * state.omega_body[k];
     }
     add_spin(body, state);
+  }
+
+  /// h^2/2 y'' of positions and quaternion, as in the second row of a history.
+  using Acceleration = std::array<double, 7>;
+  static constexpr int LEVELS = 4;
+  /// A body with accelerations after four steps of this length in a row.  Differences take the
+  /// place of derivatives in the middle; true_edge() corrects for their length.
+  void add(const RigidBody &body, const BodyState &state, const Acceleration *rows, double h)
+  {
+    double size[4][7];    // h^k/k! y^(k)
+    for (int i = 0; i < 7; ++i) {
+      const double a = rows[0][i], b = rows[1][i], c = rows[2][i], d = rows[3][i];
+      size[0][i] = 0.5 * (b + c);
+      size[1][i] = (c - b) / 3.0;
+      size[2][i] = (a - b - c + d) / 24.0;
+      size[3][i] = (d - a + 3.0 * (b - c)) / 60.0;
+    }
+    const double *derivatives[] = {size[0], size[1], size[2], size[3]};
+    add_derivatives(body, derivatives, 3, 4, h);
+    add_spin(body, state);
+  }
+  /// The fast edge from its value by differences, which is 2 sin(z/2) for a vibration of any phase.
+  static double true_edge(double by_differences)
+  {
+    return 2.0 * std::asin(std::min(1.0, 0.5 * by_differences));
   }
 
   /// Radians in a step; infinite if unknown, 0 without motion.

@@ -25,6 +25,9 @@ using namespace GearQuat;
 static constexpr double SAME_MASS = 1.0e-11;      // relative; sums run in another order
 static constexpr double SAME_MOMENTS = 1.0e-9;    // relative; arms have the rounding of positions
 static constexpr double ROUNDING = 1.0e-13;       // of positions
+static constexpr double SAME_SHAPE =
+    1.0e-3;    // of distances; files may have positions of few digits
+static constexpr double SAME_PLACE = 1.0e-6;    // of positions
 
 /* ----------------------------------------------------------------------
    counts of the atoms of all bodies
@@ -247,6 +250,8 @@ void Comparer::look_for_tears(const AtomsOfBody &body, const double *there, cons
     change[k] = now[k] - before[k];
   }
   const double further = length(now) - length(before);
+  const double few = SAME_MOMENTS * (domain->xprd + domain->yprd + domain->zprd);
+  if (std::fabs(further) > SAME_SHAPE * length(before) + few) found.reshaped = body.smallest_id;
   if (whole_periods_away(domain, change, further)) found.torn = body.smallest_id;
   if (moved_with_faces(domain, ownership.box().data(), change)) found.cut = body.smallest_id;
 }
@@ -257,13 +262,14 @@ Comparison Comparer::all()
   all.removed_freedoms = over_ranks(MPI_SUM, found.removed_freedoms, world);
   all.broken = over_ranks(MPI_MAX, found.broken, world);
   if (found.broken != all.broken) all.left = all.had = 0;
-  bigint here[] = {all.left, all.had, found.mass_changed, found.torn, found.cut};
+  bigint here[] = {all.left, all.had, found.mass_changed, found.torn, found.cut, found.reshaped};
   const auto largest = over_ranks(MPI_MAX, here, world);
   all.left = largest[0];
   all.had = largest[1];
   all.mass_changed = (tagint) largest[2];
   all.torn = (tagint) largest[3];
   all.cut = (tagint) largest[4];
+  all.reshaped = (tagint) largest[5];
   return all;
 }
 
@@ -308,5 +314,35 @@ bool Sites::match_bodies() const
   comparer.look_for_tears(*this);
   const Comparison found = comparer.all();
   if (any) refuse_tears(error, found);
+  if (any && found.reshaped && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix gear/quat: atoms of body {} were moved relative to each other since the fix "
+        "was defined or last ran, as by displace_atoms or set on single atoms; the body "
+        "is made again with this other shape",
+        found.reshaped);
   return !any && !found.mass_changed;
+}
+
+void Sites::warn_of_other_places() const
+{
+  tagint atoms[2] = {0, 0};    // an atom, and its body
+  for (const Site &site : sites) {
+    const Expected there = expected_position(site);
+    for (int k = 0; k < 3; ++k)
+      if (std::fabs(atom->x[site.atom][k] - there.value[k]) > SAME_PLACE * there.size &&
+          atom->tag[site.atom] > atoms[0]) {
+        atoms[0] = atom->tag[site.atom];
+        atoms[1] = ownership.id_of(site.atom);
+      }
+  }
+  const tagint moved = over_ranks(MPI_MAX, atoms[0], world);
+  const tagint body = over_ranks(MPI_MAX, moved == atoms[0] ? atoms[1] : 0, world);
+  if (moved && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix gear/quat: atom {} was moved away from its place in body {}, and with reinit "
+        "no, or infile, the body puts it back in the first step; use reinit yes, or "
+        "define the fix after the change",
+        moved, body);
 }

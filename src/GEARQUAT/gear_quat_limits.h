@@ -135,6 +135,14 @@ inline double rounded_down(double number)
   return std::floor(number / unit * (1.0 + 1.0e-12)) * unit;
 }
 
+/// Up to two digits.
+inline double rounded_up(double number)
+{
+  if (!std::isfinite(number) || number <= 0.0) return number;
+  const double unit = std::pow(10.0, std::floor(std::log10(number)) - 1.0);
+  return std::ceil(number / unit * (1.0 - 1.0e-12)) * unit;
+}
+
 /* ---------------------------------------------------------------------- */
 
 enum class Noise { NONE, RANDOM, COLLISIONS };

@@ -42,7 +42,7 @@ Motion::Motion(LAMMPS *lmp, Fix *fix, const Arguments &args, const Fleet &fleet,
                Ownership &ownership, Sites &sites, OtherFixes &others, Step &step) :
     Pointers(lmp),
     fix(fix), args(args), fleet(fleet), bodies(bodies), ownership(ownership), sites(sites),
-    others(others), step(step)
+    others(others), step(step), vibrations(lmp, bodies)
 {
 }
 
@@ -97,6 +97,7 @@ void Motion::begin_run()
   if (step.coupling)
     step.coupling->begin_run(!step.started, step.tolerance ? std::min(h, longest_step()) : h);
   if (step.tolerance) step.tolerance->announce_output();
+  vibrations.begin_run();
   set_up = true;
 }
 
@@ -163,6 +164,7 @@ void Motion::begin_steps(const Fleet &fleet, double **f, double **torque)
   start_together(full, needed);
   for (const auto &one : fleet.members) {
     one.motion->tell_friction();
+    one.motion->warn_of_single_pass();
     one.motion->next_look = 0;
   }
 }
@@ -321,6 +323,9 @@ void Motion::begin(bool full)
 {
   step.started = true;
   resumed = false;
+  // after the checks of the start, since an error of a coupling may have the same cause
+  if (chosen) warn_of_vibrations(*chosen, step.scheme(), true);
+  chosen.reset();
   if (!step.tolerance) return;
   step.tolerance->begin(full);
   step.make_integrator();

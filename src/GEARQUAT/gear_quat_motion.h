@@ -11,8 +11,10 @@
 
 #include "gear_quat_start.h"
 #include "gear_quat_step.h"
+#include "gear_quat_vibrations.h"
 
 #include <map>
+#include <optional>
 #include <string>
 
 namespace LAMMPS_NS::GearQuat {
@@ -53,6 +55,9 @@ class Motion : protected Pointers {
   /// Before a step, occasionally: measures the friction of contacts.  f: as in begin_steps().
   /// Collective.
   void look_at_contacts(double **f);
+  /// After a step: warns if vibrations or rotations have become too fast for the step since
+  /// histories began.  Collective in the last step of a run and a few others.
+  void look_at_vibrations();
   /// The largest error of a body on this rank in the last step, as a length.
   double last_error() const;
 
@@ -95,7 +100,12 @@ class Motion : protected Pointers {
   ChoiceOfValues scene_of(const MotionSums &here) const;
   ChoiceOfValues scene_of_start(const MotionSums &here) const;
   double edge_rate = 0.0;    ///< fast edge divided by the step, when the number was chosen
-  double damping = 0.0;      ///< part of a momentum that is damped by forces in a step
+  Vibrations vibrations;
+  double advised_step = HUGE_VAL;          ///< by the last warning about vibrations
+  std::optional<ChoiceOfValues> chosen;    ///< input to the choice of a start that has not ended
+  bool warned_pass = false;
+  bool warned_values = false;
+  double damping = 0.0;    ///< part of a momentum that is damped by forces in a step
   void measure_friction(double **f);
   bool warned_friction = false, watches = false;
   bigint next_look = 0;    ///< step before which the friction of contacts is measured again
@@ -103,6 +113,9 @@ class Motion : protected Pointers {
   Scheme foresee_scheme(const MotionSums &here) const;
   Scheme choose_scheme(const MotionSums &here);
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
+  void warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins);
+  void warn_of_values(const ChoiceOfValues &scene);
+  void warn_of_single_pass();
   const char *another_scheme_suits();
   std::string words_of_scheme() const;
   /// True if a start finds all derivatives, as far as it can.

@@ -8,6 +8,7 @@
 #include "gear_quat_friction.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
+#include "gear_quat_scene.h"
 
 #include "comm.h"
 #include "error.h"
@@ -65,6 +66,8 @@ Scheme Motion::choose_scheme(const MotionSums &here)
   const ChoiceOfValues::Choice choice = scene.choose(args.scheme);
   edge_rate = scene.edge / std::fabs(step.length());
   tell_choice(scene, choice);
+  chosen = scene;
+  warned_values = false;
   step.set_scheme(choice.scheme);
   return choice.scheme;
 }
@@ -95,14 +98,70 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
   const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
   utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
                  other_corrector ? " and corrector gear" : "", why);
-  if (scene.too_long(choice.scheme))
-    error->warning(
-        FLERR,
-        "Fix gear/quat {}: vibrations of {:.2g} and rotations of {:.2g} radians in a step are more "
-        "than any number of values can follow for long; use a time step of {:g} or shorter, or, if "
-        "atoms overlap, begin with a run with keywords tolerance and temp",
-        fix->id, scene.edge, scene.turn,
-        rounded_down(std::fabs(step.length()) * scene.advised_part(choice.scheme)));
+}
+
+/// Once, and again if only a much shorter step is short enough.
+void Motion::warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins)
+{
+  const double advised = std::fabs(step.length()) * scene.advised_part(scheme);
+  if (!scene.too_long(scheme) || advised * ChoiceOfValues::BAND > advised_step) return;
+  advised_step = advised;
+  if (comm->me != 0) return;
+  error->warning(
+      FLERR,
+      "Fix gear/quat {}: {}vibrations of {:.2g} and rotations of {:.2g} radians in a step are more "
+      "than any number of values can follow for long; use a time step of {:g} or shorter{}",
+      fix->id, begins ? "" : fmt::format("at step {} ", update->ntimestep), scene.edge, scene.turn,
+      rounded_down(advised),
+      begins ? ", or, if atoms overlap, begin with a run with keywords tolerance and temp" : "");
+}
+
+void Motion::look_at_vibrations()
+{
+  if (!args.automatic_values || step.tolerance || !vibrations.note_step(step.length())) return;
+  ChoiceOfValues scene = scene_of(vibrations.sums());
+  scene.edge = MotionSums::true_edge(scene.edge);
+  if (!scene.exact) return;
+  if (scene.too_long(step.scheme()))
+    warn_of_vibrations(scene, step.scheme(), false);
+  else
+    warn_of_values(scene);
+}
+
+/// Once for the histories, which keep their number of values.
+void Motion::warn_of_values(const ChoiceOfValues &scene)
+{
+  const int present = step.scheme().values();
+  const ChoiceOfValues::Choice suits = scene.choose(args.scheme, present);
+  if (warned_values || suits.reason != ChoiceOfValues::Reason::MOTION ||
+      suits.scheme.values() >= present)
+    return;
+  warned_values = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat {}: at step {} vibrations of {:.2g} and rotations of {:.2g} "
+                   "radians in a step require {} values, but histories began with {} for a slower "
+                   "motion; use keyword values {}, or define the fix again before the next run",
+                   fix->id, update->ntimestep, scene.edge, scene.turn, suits.scheme.values(),
+                   present, suits.scheme.values());
+}
+
+/// Rank 0 warns once.  In water at 1 fs, a single pass is unstable with 7, 9 and 11 tuned values, with
+/// and without projection, and stable with 5, 6, 8, 10 and 12.  Collective.
+void Motion::warn_of_single_pass()
+{
+  const Scheme &scheme = step.scheme();
+  const int values = scheme.values();
+  if (warned_pass || scheme.passes != 1 || !scheme.tuned || scheme.first()) return;
+  if (values < 7 || values % 2 == 0 || bodies.number() < 2 || !makes_forces(lmp, fix)) return;
+  if (!over_ranks(MPI_MAX, (int) !bodies.tops.empty(), world)) return;
+  warned_pass = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat {}: with passes 1 and {} tuned values rotations are unstable in "
+                   "liquids and other systems with strong torques; leave out keyword passes, or "
+                   "use passes 2",
+                   fix->id, values);
 }
 
 /// Measures the damping of momenta by forces in a step.  f: the forces of all fixes.  Collective.

@@ -43,6 +43,7 @@ struct Comparison {
   bigint left = 0, had = 0;       ///< its atoms now and before
   tagint mass_changed = 0;        ///< a body whose atoms have another mass, center or inertia
   tagint torn = 0;                ///< a body whose atoms are now whole periods further apart
+  tagint reshaped = 0;            ///< a body with other distances between its atoms
   tagint cut = 0;                 ///< a body that another box has torn at the faces of the box
 };
 

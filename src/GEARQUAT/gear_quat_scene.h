@@ -35,6 +35,11 @@ void refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Ownersh
 void warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Arguments &args,
                                const Fleet &fleet, const Ownership &ownership);
 
+/// Rank 0 warns if molecule IDs have changed since the bodies were made from them.  Returns true
+/// then.  Collective.
+bool warn_of_molecule_ids(LAMMPS *lmp, const Fix *fix, const Arguments &args,
+                          const Ownership &ownership);
+
 /// The name of a style that reads velocities between prediction and correction, or empty.  owner:
 /// the calling fix.
 std::string reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner);

@@ -58,6 +58,8 @@ class Sites : protected Pointers {
   /// image flags or another box have torn a body.  Sites are listed, and Ownership::box() is the
   /// previous box.  In gear_quat_compare.cpp.  Collective.
   bool match_bodies() const;
+  /// Rank 0 warns if an atom is not where its body will put it.  Collective.
+  void warn_of_other_places() const;
   /// The number of times that sites were listed or placed, the same on all ranks: results computed
   /// from positions or loads at another number are out of date.
   int placements() const { return nplacements; }

@@ -58,7 +58,7 @@ struct StepErrors {
 /// position, orientation and velocities.
 struct StepMeasures {
   StepErrors length, energy;
-  struct {
+  struct Rounding {
     double length = 0.0, energy = 0.0;
   } rounding;    ///< part of the errors that is due to rounding of the state of a body
 
@@ -120,10 +120,15 @@ class VariableOrder {
     const Worth worth = worth_of(integrator, body, load, axes, rows);
     errors.energy = {energy(worth, fewer, last), energy(worth, same, trial),
                      energy(worth, more, change)};
-    errors.rounding.length = rounding_of_sites(reach, rows);
-    errors.rounding.energy =
-        worth.position * errors.rounding.length + LAST_DIGIT * worth.twice_kinetic;
+    errors.rounding = rounding(worth, reach, rows);
     return errors;
+  }
+
+  /// The part of the errors of a step that no step is short enough to remove.
+  StepMeasures::Rounding rounding(const Integrator &integrator, const RigidBody &body, double reach,
+                                  const Load &load, const double *axes, const double *rows) const
+  {
+    return rounding(worth_of(integrator, body, load, axes, rows), reach, rows);
   }
 
   /// Errors of a step from the rows alone, for the present number of values.
@@ -212,6 +217,12 @@ class VariableOrder {
   {
     const double *x = rows + Scheme::POSITION;
     return LAST_DIGIT * (std::max({std::fabs(x[0]), std::fabs(x[1]), std::fabs(x[2])}) + reach);
+  }
+
+  StepMeasures::Rounding rounding(const Worth &worth, double reach, const double *rows) const
+  {
+    const double of_sites = rounding_of_sites(reach, rows);
+    return {of_sites, worth.position * of_sites + LAST_DIGIT * worth.twice_kinetic};
   }
 
   Worth worth_of(const Integrator &integrator, const RigidBody &body, const Load &load,

@@ -112,6 +112,27 @@ double Tolerance::first_error() const
   return largest;
 }
 
+/// Rank 0 warns if no step is short enough for eps.  Collective.
+void Tolerance::warn_of_rounding() const
+{
+  const Integrator integrator(present, update->dt);
+  double largest = 0.0;
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    const Body &body = bodies.body_at(ibody);
+    const auto one = order.rounding(integrator, body.rigid, body.reach(), bodies.load_of(ibody),
+                                    bodies.axes(ibody), bodies.history(ibody));
+    largest = std::max(largest, control.energy ? one.energy : one.length);
+  }
+  largest = over_ranks(MPI_MAX, largest, world);
+  if (control.eps >= largest || comm->me != 0) return;
+  error->warning(
+      FLERR,
+      "Fix gear/quat tolerance: eps is {:.2g} {} units, and rounding of the motion causes "
+      "errors of {:.2g}, which shorter steps do not reduce; use an eps of {:.2g} or more",
+      shown(control.eps), control.energy ? "energy" : "distance", shown(largest),
+      rounded_up(shown(largest)));
+}
+
 /// The first step of histories with the present loads alone.  Forces are assumed to change by their
 /// own magnitude while a body moves by its size, at its speed or by its acceleration from rest.
 double Tolerance::first_step_of_low_order() const
@@ -145,6 +166,7 @@ void Tolerance::bound_first_step(double permitted)
 
 void Tolerance::shorten_first_step(bool full)
 {
+  warn_of_rounding();
   double here[2] = {full ? first_error() : 0.0, largest_speed()};
   const auto all = over_ranks(MPI_MAX, here, world);
   const double largest = all[0];

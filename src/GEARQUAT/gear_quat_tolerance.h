@@ -178,6 +178,7 @@ class Tolerance : protected Pointers {
   double step_error() const { return control.measured(errors).same; }
   void include(StepMeasures of_body);
   double first_error() const;
+  void warn_of_rounding() const;
   double first_step_of_low_order() const;
   void begin_run();
   void tell_of_first_step(double instead) const;

@@ -72,6 +72,26 @@ TEST(FastEdge, IsTheFrequencyOfAVibrationAtAnyPhaseAndSpacing)
       }
 }
 
+TEST(FastEdge, FollowsFromTheAccelerationsOfFourSteps)
+{
+  for (const double phase : {0.0, 0.1, 0.8, 1.57, 1.5707963267948966})
+    for (const double h : {0.04, -0.1, 0.3}) {
+      MotionSums::Acceleration rows[MotionSums::LEVELS];
+      for (int n = 0; n < MotionSums::LEVELS; ++n) {
+        const BodyState s = swinging(phase + n * OMEGA * h);
+        const TaylorSeries series = local_series(BALL, s, springs(s, 1.0), h);
+        std::copy_n(series.c[2], 7, rows[n].begin());
+      }
+      MotionSums sums;
+      sums.add(BALL, swinging(phase), rows, h);
+      const double edge = MotionSums::true_edge(sums.fast_edge(h)), exact = std::fabs(h) * OMEGA;
+      EXPECT_NEAR(edge, exact, 1e-6 * exact) << phase;
+      EXPECT_GT(std::fabs(edge / (1.01 * exact) - 1.0), 0.005);
+      EXPECT_TRUE(sums.knows_derivatives());
+    }
+  EXPECT_NEAR(MotionSums::true_edge(5.0), 3.14159265358979, 1e-12);    // forces without a pattern
+}
+
 TEST(FastEdge, OfAFreeRotationIsThatOfItsQuaternion)
 {
   BodyState s = {};

@@ -1,0 +1,54 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* Vibrations that become faster during a run, as in a gas that condenses.
+
+   The start measures the fast edge (gear_quat_choice.h) from derivatives.  During a run it follows
+   from the accelerations in a window of four steps, without evaluations of the forces.  A window
+   ends with the last step of a run, and with its step 100, 200, 400 and so on.  Other steps cost one
+   comparison.
+
+   Motion calls note_step() after every step, and sums() if that returns true. */
+
+#ifndef LMP_GEAR_QUAT_VIBRATIONS_H
+#define LMP_GEAR_QUAT_VIBRATIONS_H
+
+#include "gear_quat_bodies.h"
+#include "gear_quat_choice.h"
+
+#include "pointers.h"
+
+#include <array>
+#include <unordered_map>
+
+namespace LAMMPS_NS::GearQuat {
+
+class Vibrations : protected Pointers {
+ public:
+  Vibrations(LAMMPS *lmp, const Bodies &bodies) : Pointers(lmp), bodies(bodies) {}
+
+  void begin_run();
+  /// After a step of length h, with its states and loads.  True if a window ends.
+  bool note_step(double h);
+  /// Of the bodies that this rank has owned during the window.  Empties the window.
+  MotionSums sums();
+
+ private:
+  struct Record {
+    int steps = 0;
+    std::array<MotionSums::Acceleration, MotionSums::LEVELS> rows = {};
+  };
+  const Bodies &bodies;
+  bigint end = 0;                                ///< last step of the next window
+  double width = 0.0;                            ///< step in the window
+  std::unordered_map<tagint, Record> records;    ///< by the IDs of bodies
+
+  void choose_end();
+  void record(double h);
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif

@@ -1,0 +1,91 @@
+"""Vibrations that become faster during a run: trimers of a cold gas condense to a droplet."""
+
+import re
+
+import pytest
+
+TRIMER = "trimer\n\n3 atoms\n\nCoords\n\n1 0 0 0\n2 0.9 0 0\n3 0.2 0.8 0\n\nTypes\n\n1 1\n2 1\n3 1\n"
+GAS = """
+units lj
+atom_style full
+lattice sc 0.04
+region box block 0 3 0 3 0 3
+create_box 1 box
+molecule body trimer.mol
+mass 1 1
+pair_style lj/smooth/linear 2.5
+pair_coeff * * 1 1
+neighbor 0.4 bin
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+create_atoms 0 box mol body 4711
+velocity all create 1.0 4711 loop geom
+timestep {dt}
+thermo 500
+thermo_modify norm no format float %.17g
+fix move all gear/quat molecule {words}
+{run}
+"""
+COLD = "temp 0.3 0.3 0.5"
+AGAIN = "\nunfix move\nfix move all gear/quat molecule\nrun 1"
+BEGINS = re.compile(r"Fix gear/quat move: \d values, for vibrations of (\S+) and")
+TOO_FAST = re.compile(r"move: at step (\d+) vibrations of (\S+) and rotations of \S+ radians in a step are more than any")
+MORE = re.compile(r"move: at step (\d+) vibrations of (\S+) and rotations of \S+ radians in a step require 5 values")
+ADVICE = re.compile(r"use a time step of (\S+) or shorter")
+
+
+def condense(lmp, dt, run, words=COLD, ranks=1):
+    (lmp.folder / "trimer.mol").write_text(TRIMER)
+    return lmp.succeed(GAS.format(dt=dt, words=words, run=run), ranks=ranks)
+
+
+def test_faster_vibrations_are_warned_of(lmp_wheel):
+    """Once in several runs, with a step that is short enough; a new start measures the same vibrations."""
+    result = condense(lmp_wheel, 0.02, "run 1000\nrun 2000 every 500 NULL\nrun 0" + AGAIN)
+    first, later = map(float, BEGINS.findall(result.stdout))
+    ((step, edge),) = TOO_FAST.findall(result.words)
+    assert first < 0.2 and float(edge) > 0.6 and int(step) <= 3000
+    assert later == pytest.approx(float(edge), rel=0.35)
+    advised = float(ADVICE.findall(result.words)[0])
+    assert advised == pytest.approx(0.02 * 0.5 / float(edge), rel=0.06)
+    assert not TOO_FAST.search(condense(lmp_wheel, advised, "run 3000").words)
+
+
+def test_a_number_of_values_that_suits_no_more(lmp_wheel):
+    result = condense(lmp_wheel, 0.013, "run 3000\nrun 1000\nrun 1000")
+    assert "9 values, for" in result.stdout
+    ((step, edge),) = MORE.findall(result.words)
+    assert 0.325 < float(edge) < 0.6
+    assert not MORE.search(condense(lmp_wheel, 0.013, "run 5000", "values 5 " + COLD).words)
+
+
+def test_bodies_on_several_ranks(lmp_wheel):
+    """From the same atoms, which do not depend on the number of ranks here."""
+    condense(lmp_wheel, 0.016, "run 0\nwrite_data cold.data")
+    begin, _, rest = GAS.partition("lattice")
+    deck = begin + "read_data cold.data\npair_style" + rest.partition("pair_style")[2]
+    made = re.compile("^(create_atoms|velocity).*\n", re.MULTILINE)
+    deck = made.sub("", deck).format(dt=0.016, words=COLD, run="run 200")
+    told = [MORE.findall(lmp_wheel.succeed(deck, ranks=ranks).words) for ranks in (1, 2)]
+    assert told[0] == told[1] and len(told[0]) == 1
+
+
+@pytest.mark.parametrize(
+    "dt, run, words",
+    [
+        (0.006, "run 3000", COLD),
+        (0.025, "run 0", COLD),
+        (0.025, "run 3", COLD),
+        (0.02, "run 500", "tolerance 1e-5 " + COLD),
+        (0.02, "run 2000", "values 5 " + COLD),
+        (0.013, "fix l all langevin 0.5 0.5 1.0 4711\nrun 3000", ""),
+    ],
+)
+def test_no_reason_to_warn(lmp_wheel, dt, run, words):
+    words = condense(lmp_wheel, dt, run, words).words
+    assert not TOO_FAST.search(words) and not MORE.search(words)
+
+
+def test_the_motion_is_not_changed(lmp_wheel):
+    """Where the number of values is stated, nothing is measured."""
+    automatic, stated = (condense(lmp_wheel, 0.013, "run 1000", words).thermo[0] for words in (COLD, "values 9 " + COLD))
+    assert automatic["TotEng"] == stated["TotEng"]
