@@ -22,8 +22,8 @@ using namespace GearQuat;
    words of the rigid fixes
 ------------------------------------------------------------------------- */
 
-static constexpr char SCALED_TILT[] = "the tilts xy and xz change by the factor of the edge along "
-                                      "x, and yz by that of the edge along y; leave it out";
+static constexpr char SCALED_TILT[] = "the tilts xy and xz scale with the edge along x, and yz "
+                                      "with the edge along y; leave it out";
 
 /// doc/howto/from_rigid.md has the same table.
 static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGID_WORDS = {
@@ -35,7 +35,7 @@ static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGI
     {{"scalexy", "scalexz", "scaleyz"}, SCALED_TILT},
     {{"drag"}, "the equations of motion of the box have no drag; use a longer Pdamp instead"},
     {{"mtk"}, "its terms always belong to the equations of motion; leave it out"},
-    {{"nreset"}, "pressures are those of the present box, not of a reference cell; leave it out"},
+    {{"nreset"}, "pressures refer to the present box, not to a reference cell; leave it out"},
     {{"tloop", "ploop"}, "chains choose their own sub-steps; leave it out"},
     {{"update"}, "rotations are always integrated; leave it out"},
     {{"gravity"},

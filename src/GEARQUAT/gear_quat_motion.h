@@ -118,7 +118,7 @@ class Motion : protected Pointers {
   void warn_of_single_pass();
   const char *another_scheme_suits();
   std::string words_of_scheme() const;
-  /// True if a start finds all derivatives, as far as it can.
+  /// True unless start zero is given: a start determines as many derivatives as it can.
   bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP; }
   bool has_to_start(double **f);
   static void start_together(const std::vector<Motion *> &full, const std::vector<bool> &needed);

@@ -373,7 +373,7 @@ std::string Repeat::reason() const
 
 void Repeat::evaluate(int vflag)
 {
-  modify->clearstep_compute();             // results of computes are from other positions
+  modify->clearstep_compute();             // computes have evaluated other positions
   const bigint now = update->ntimestep;    // as set by Integrate::ev_set()
   const int eflag = (update->eflag_global == now ? ENERGY_GLOBAL : 0) |
       (update->eflag_atom == now ? ENERGY_ATOM : 0);

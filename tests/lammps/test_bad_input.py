@@ -167,7 +167,7 @@ ARGUMENTS = {
     "molecule iso 1 1 1 scalexy no": "no keyword scalexy of the rigid fixes: the tilts xy and xz change",
     "molecule iso 1 1 1 drag 0.1": "no keyword drag of the rigid fixes: the equations of motion of the box have no drag",
     "molecule iso 1 1 1 mtk yes": "no keyword mtk of the rigid fixes: its terms always belong",
-    "molecule iso 1 1 1 nreset 100": "no keyword nreset of the rigid fixes: pressures are those of the present box",
+    "molecule iso 1 1 1 nreset 100": "no keyword nreset of the rigid fixes: pressures refer to the present box",
     "molecule iso 1 1 1 ploop 2": "no keyword ploop of the rigid fixes: chains choose",
     "molecule iso 1 1 1 pparam 2": "no keyword pparam of the rigid fixes: a barostat is integrated",
     "single mol some": "keyword mol requires bodystyle molecule",
