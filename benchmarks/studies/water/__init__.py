@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.engine import Finding, Measurement, Study, Table
 from benchmarks.engine.statistics import allowed, mean_of_blocks, with_error
 
-from .plan import COMPRESSED, LONG, METHODS, MODELS, OURS, PUBLISHED, ROUND, SHORT, TEMPERATURE
+from .plan import COMPRESSED, LONG, METHODS, MODELS, OURS, PUBLISHED, SHORT, TARGETS, TEMPERATURE
 from .runs import BOLTZMANN, measure
 
 #: 1/atm in 1/GPa, and kcal/mol/A^3 in atm
