@@ -81,7 +81,7 @@ class Plan:
     frame: float = 0.096
     equilibration: int = 3000
     blocks: int = 5
-    timed: tuple = (1000, 3)
+    timed: tuple = (1000, 5)
 
     @property
     def lengths(self):
@@ -89,4 +89,4 @@ class Plan:
         return {"settle": self.settle, "steps": self.duration}
 
 
-QUICK = Plan(0.0, 0.1, 0.72, 0.024, 0.048, 200, timed=(40, 1))
+QUICK = Plan(0.0, 0.1, 0.72, 0.024, 0.048, 200, timed=(40, 2))
