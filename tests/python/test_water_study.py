@@ -29,7 +29,7 @@ def made_up(density=0.0, warmer=0.0, compressed=1.0):
         for start in range(1, COUNT + 1):
             volume, enthalpy = VOLUME + 0.05 * np.sqrt(spread) * rng.normal(), -2450.0 + 0.05 * np.sqrt(hot) * rng.normal()
             sample = runs.Sample(
-                *(series.model, series.method, series.dt, series.pressure, series.ensemble, start, 0, "abc", "-1.5", 100.0, 4000),
+                *(series.model, series.method, series.dt, series.pressure, series.ensemble, series.temperature, start, 0, "abc", "-1.5", 100.0, 4000),
                 density=plan.PUBLISHED[series.model] * np.exp(change) + ours * density + 2e-4 * rng.normal(),
                 energy=-11.0 + 0.002 * rng.normal(),
                 volume=volume,
@@ -88,6 +88,19 @@ def test_extrapolation_removes_an_error_of_second_order():
     (exact, _), (mean, error) = quantities.DENSITY.of(samples), quantities.DENSITY.of(fine)
     found = quantities.extrapolated(fine, coarse, quantities.DENSITY)
     assert found[0] == pytest.approx(1.0 + 1e-4 * np.mean(range(COUNT))) and found[1] == pytest.approx(error * math.sqrt(17) / 3)
+
+
+def test_the_maximum_of_a_parabola():
+    """Densities on a parabola with the expansion of the samples: errors of the stated size scatter its maximum by 1 K."""
+    samples = water.of_series(made_up())[plan.LONG["tip4p"]]
+    needed, rng = quantities.needed_for_maximum(samples), np.random.default_rng(6)
+    curvature = 0.998 * 1e-4 * quantities.EXPANSION.of(samples)[0] / (plan.TEMPERATURE - plan.MAXIMUM)
+    warm = np.array(plan.FITTED) - plan.MAXIMUM
+    found = []
+    for _ in range(2000):
+        second, first, _ = np.polyfit(warm, -0.5 * curvature * warm**2 + needed * rng.normal(size=5), 2)
+        found.append(-first / (2 * second))
+    assert np.median(np.abs(found)) == pytest.approx(0.6745, rel=0.15)
 
 
 def test_costs():

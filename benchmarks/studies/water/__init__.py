@@ -13,14 +13,14 @@ from benchmarks.engine.panels import Curve, Panel
 from benchmarks.engine.statistics import allowed
 
 from . import quantities
-from .plan import COMPRESSED, EXTRAPOLATED, FIXED, LONG, METHODS, MODELS, NPT, OURS, PUBLISHED, SHAKE, SHORT, TARGETS, TEMPERATURE
+from .plan import COLD, COMPRESSED, EXTRAPOLATED, FIXED, LONG, METHODS, MODELS, OURS, PUBLISHED, SHAKE, SHORT, TARGETS, TEMPERATURE
 from .quantities import AVERAGES, COMPRESSIBILITY, DENSITY, ENERGY, FLUCTUATIONS, PRESSURE, WARMER, cell, difference, duration
 from .runs import measure
 
 #: standard errors that a comparison of time steps needs: K, g/mL (3e-4 of the density), kcal/mol (0.02 kJ/mol)
 NEEDED = {WARMER: 0.3, DENSITY: 3e-4, ENERGY: 0.02 / 4.184}
 #: number of values that are compared with expected ones; it determines the largest deviation allowed
-COMPARED = 8
+COMPARED = 9
 RICHARDSON = f"{METHODS[SHAKE]}, extrapolated from 1 and 2 fs"
 
 
@@ -31,7 +31,7 @@ def of_series(samples):
 
 def at_atmosphere(found, model=None):
     """The series at 1 atm that have samples, of one model or all; by model and method, the longest step first."""
-    chosen = [one for one in found if one.pressure == 1.0 and one.ensemble == NPT and found[one] and model in (None, one.model)]
+    chosen = [one for one in found if one.usual and found[one] and model in (None, one.model)]
     return sorted(chosen, key=lambda one: (list(MODELS).index(one.model), list(METHODS).index(one.method), -one.dt))
 
 
@@ -99,6 +99,16 @@ def cost_table(found, rounds):
     return Table(("method and step", *header, "relative cost"), rows)
 
 
+def for_maximum(found, rounds):
+    """(error of the densities in g/mL, core-hours) of ``fix gear/quat`` for a temperature of maximum density to 1 K.
+
+    Densities at the coldest and warmest of five temperatures are taken to need as long as those of COLD and LONG.
+    """
+    needed = quantities.needed_for_maximum(found[LONG["tip4p"]])
+    ns = np.mean([duration(found[series], DENSITY, needed) for series in (LONG["tip4p"], COLD[0])])
+    return needed, 5 * ns * per_square({OURS: min(rounds[OURS])}, OURS, 2.0) / 3600
+
+
 def widest(error, *groups):
     """Largest allowed deviation of a value with this standard error, from this number of groups of samples."""
     freedoms = sum(len(samples) - 1 for samples in groups)
@@ -114,12 +124,17 @@ def measurements(found):
         bounds = {"remark": f"published: {right}", "least": right - most, "most": right + most}
         what = f"density of {MODELS[model].title}, {series.text}"
         rows.append(Measurement(what, value, error, ".5f", "g/mL", **bounds))
-    for quantity, pair in ((DENSITY, (LONG["tip4p"], SHORT)), (ENERGY, (LONG["tip4p"], SHORT)), (PRESSURE, FIXED)):
+    for quantity, pair, where, digits in (
+        (DENSITY, (LONG["tip4p"], SHORT), "", 5),
+        (DENSITY, COLD, f" at {COLD[0].temperature:g} K", 5),
+        (ENERGY, (LONG["tip4p"], SHORT), "", 5),
+        (PRESSURE, FIXED, " at constant volume", 0),
+    ):
         both = [found[series] for series in pair]
         apart = difference(*(quantity.of(samples) for samples in both))
-        most, where = widest(apart[1], *both), "" if quantity is not PRESSURE else " at constant volume"
+        most = widest(apart[1], *both)
         words = f"{quantity.name} of {MODELS['tip4p'].title}{where}, {pair[0].text}, minus {pair[1].text}"
-        rows.append(Measurement(words, *apart, ".5f" if quantity is not PRESSURE else ".0f", quantity.unit, least=-most, most=most))
+        rows.append(Measurement(words, *apart, f".{digits}f", quantity.unit, least=-most, most=most))
     squeezed = [found[series] for series in COMPRESSED]
     apart = difference(COMPRESSIBILITY.of(found[LONG["spce"]]), quantities.by_two_pressures(*squeezed))
     most, remark = widest(apart[1], *squeezed), f"the latter: {cell(quantities.by_two_pressures(*squeezed))}"
@@ -161,6 +176,10 @@ def find(results):
     context["pressures"] = [series.pressure for series in COMPRESSED]
     context["fixed"] = [PRESSURE.text(found[series]) for series in FIXED]
     context["apart"] = cell(difference(*(PRESSURE.of(found[series]) for series in FIXED)), "+")
+    context["cold"] = [DENSITY.text(found[series]) for series in COLD]
+    context["cold_apart"] = cell(difference(*(DENSITY.of(found[series]) for series in COLD)), "+")
+    context["cold_temperature"] = COLD[0].temperature
+    context["maximum"] = for_maximum(found, results.seconds)
     tables = {"water": table(found, AVERAGES), "fluctuations": table(found, FLUCTUATIONS, lengths=False)}
     tables |= {"durations": durations(found), "costs": cost_table(found, results.seconds)}
     pictures = {"water": panels(found)}

@@ -28,12 +28,18 @@ class Series:
     dt: float
     pressure: float = 1.0
     ensemble: str = NPT
+    temperature: float = TEMPERATURE
 
     @property
     def name(self):
         """Name in file names."""
         where = f"{self.pressure:g}atm" if self.ensemble == NPT else self.ensemble
-        return f"{self.model}_{self.method}_{self.dt:g}fs_{where}"
+        return f"{self.model}_{self.method}_{self.dt:g}fs_{where}_{self.temperature:g}K"
+
+    @property
+    def usual(self):
+        """True at constant pressure, 1 atm and TEMPERATURE."""
+        return self.ensemble == NPT and self.pressure == 1.0 and self.temperature == TEMPERATURE
 
     @property
     def text(self):
@@ -49,6 +55,10 @@ LONG = {model: Series(model, OURS, 2.0) for model in MODELS}
 SHORT, EXTRAPOLATED = Series("tip4p", SHAKE, 0.5), (Series("tip4p", SHAKE, 1.0), Series("tip4p", SHAKE, 2.0))
 #: a long and a short step at constant volume, whose pressures are compared
 FIXED = tuple(Series("tip4p", OURS, dt, ensemble=NVT) for dt in (2.0, 0.5))
+#: the same long and short step as above in cold water
+COLD = tuple(Series("tip4p", method, dt, temperature=250.0) for method, dt in ((OURS, 2.0), (SHAKE, 0.5)))
+#: published temperature of maximum density of TIP4P/2005 (Abascal and Vega 2005), K; temperatures of a fit that finds it
+MAXIMUM, FITTED = 278.0, (255.0, 266.5, 278.0, 289.5, 301.0)
 #: Series -> nanoseconds that it should have; the series that lacks the largest part comes next
 TARGETS = {
     LONG["tip4p"]: 4.0,
@@ -61,6 +71,8 @@ TARGETS = {
     LONG["spce"]: 1.0,
     COMPRESSED[0]: 0.5,
     COMPRESSED[1]: 0.5,
+    COLD[0]: 1.0,
+    COLD[1]: 0.5,
 }
 #: number of runs between two looks at the clock
 BATCH = 6
@@ -68,7 +80,7 @@ BATCH = 6
 
 @dataclass(frozen=True)
 class Plan:
-    """Durations in ps of a run: ``settle`` before samples, ``duration`` of ``blocks`` samples, ``every`` between rows.
+    """Durations in ps of a run: ``settle`` before samples (three times as long in cold water), ``duration`` of ``blocks`` samples, ``every`` between rows.
 
     ``hours``: no further batch of runs begins after this time.  ``frame``: between frames of the dump, in ps.
     ``equilibration``: steps for a start.  ``timed``: steps and rounds of the timing.
@@ -83,10 +95,9 @@ class Plan:
     blocks: int = 5
     timed: tuple = (1000, 5)
 
-    @property
-    def lengths(self):
+    def lengths(self, series):
         """Variable of the deck -> picoseconds."""
-        return {"settle": self.settle, "steps": self.duration}
+        return {"settle": self.settle * (1 if series.temperature == TEMPERATURE else 3), "steps": self.duration}
 
 
 QUICK = Plan(0.0, 0.1, 0.72, 0.024, 0.048, 200, timed=(40, 2))

@@ -11,7 +11,7 @@ from benchmarks.engine.statistics import with_error
 from gearquat_analysis.units import UNITS
 
 from .frames import AXES
-from .plan import MODELS, TEMPERATURE
+from .plan import FITTED, MAXIMUM, MODELS, TEMPERATURE
 
 REAL = UNITS["real"]
 KT = REAL.boltzmann * TEMPERATURE
@@ -120,11 +120,12 @@ ENERGY = Quantity("potential energy", "kcal/mol", energy)
 WARMER = Quantity("T translation − T rotation", "K", warmer, "+")
 AXIS = [Quantity(f"T translation − T rotation about {axis}", "K", colder(name), "+") for axis, name in zip(AXES, ("normal", "dipole", "hydrogens"))]
 COMPRESSIBILITY = Quantity("compressibility", "1/GPa", compressibility)
+EXPANSION = Quantity("expansion", "1e-4/K", expansion)
 PRESSURE = Quantity("pressure", "atm", mean_of("measured"))
 AVERAGES = [DENSITY, ENERGY, WARMER, *AXIS]
 FLUCTUATIONS = [
     COMPRESSIBILITY,
-    Quantity("expansion", "1e-4/K", expansion),
+    EXPANSION,
     Quantity("heat capacity", "cal/mol/K", heat_capacity),
     Quantity("dielectric constant", "", dielectric_constant),
     Quantity("diffusion", "1e-9 m²/s", mean_of("diffusion", 10.0)),
@@ -148,6 +149,16 @@ def extrapolated(fine, coarse, quantity):
 def difference(one, other):
     """(value, error) of the difference of two (value, error)."""
     return one[0] - other[0], math.hypot(one[1], other[1])
+
+
+def needed_for_maximum(samples):
+    """Standard error of densities, g/mL, with which a fit gives the temperature of maximum density to 1 K.
+
+    Five temperatures FITTED and a parabola are assumed.  Its curvature follows from the thermal expansion of the samples at
+    TEMPERATURE, which grows in proportion to the distance from the MAXIMUM.
+    """
+    curvature = DENSITY.of(samples)[0] * 1e-4 * EXPANSION.of(samples)[0] / (TEMPERATURE - MAXIMUM)
+    return abs(curvature) * float(np.sqrt(np.sum((np.array(FITTED) - np.mean(FITTED)) ** 2)))
 
 
 def duration(samples, quantity, error):

@@ -45,6 +45,7 @@ class Sample:
     dt: float
     pressure: float
     ensemble: str
+    temperature: float
     start: int
     block: int
     commit: str
@@ -72,7 +73,7 @@ class Sample:
     @property
     def series(self):
         """The Series it belongs to."""
-        return Series(self.model, self.method, self.dt, self.pressure, self.ensemble)
+        return Series(*(getattr(self, field.name) for field in fields(Series)))
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,7 @@ def write_samples(samples, path):
 def job(series, data, number, plan):
     """Job of one run."""
     every = round(1000 * plan.every / series.dt)
-    steps = {name: every * math.ceil(1000 * length / (every * series.dt)) for name, length in plan.lengths.items()}
+    steps = {name: every * math.ceil(1000 * length / (every * series.dt)) for name, length in plan.lengths(series).items()}
     variables = {"every": every, "frame": round(1000 * plan.frame / series.dt), "seed": number, **steps}
     return Job(FOLDER / "in.water", _of_series(series, data) | variables, sum(steps.values()), plugin=series.method == OURS)
 
@@ -113,7 +114,7 @@ def _of_series(series, data):
     """Variables of in.water."""
     liquid = MODELS[series.model]
     variables = {"liquid": liquid.key, "data": data, "pair": liquid.pair, "kspace": liquid.kspace, "dt": series.dt}
-    return variables | {"temperature": TEMPERATURE, "pressure": series.pressure, "method": series.method, "ensemble": series.ensemble}
+    return variables | {name: getattr(series, name) for name in ("temperature", "pressure", "method", "ensemble")}
 
 
 def read(finished, series, number, origin, blocks):
