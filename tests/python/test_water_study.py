@@ -1,58 +1,134 @@
-"""Study of water: what follows from made-up samples, what is refused, which samples are kept, a small run."""
+"""Study of water: what follows from made-up samples, which run comes next, motion in a made-up dump."""
 
+import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from benchmarks.studies import water
-from benchmarks.studies.water import plan, runs
+from benchmarks.studies.water import frames, plan, quantities, runs
 
-VOLUME, COMPRESSIBILITY = 6470.0, 0.45
-COUNT = 12
+VOLUME, COMPRESSIBILITY, CAPACITY, EXPANSION = 6470.0, 0.45, 21.0, 2.8
+MOLECULES, COUNT = 216, 12
 
 
-def made_up(density=0.0, warmer=0.0, volume2=1.0, compressed=1.0):
-    """Samples of all series: faults of ours at 2 fs and 1 atm, and of the densities at other pressures."""
-    rng, samples = np.random.default_rng(5), []
-    spread = COMPRESSIBILITY / water.PER_GPA * VOLUME * runs.BOLTZMANN * plan.TEMPERATURE * water.ATMOSPHERES
-    for series in plan.ROUND:
+def made_up(density=0.0, warmer=0.0, compressed=1.0):
+    """Samples of all series: faults of ours at 2 fs and 1 atm, and of the densities at other pressures.
+
+    Means of volume and enthalpy are correlated, and their fluctuations within a sample give the constants above.
+    """
+    rng, samples, kT = np.random.default_rng(5), [], quantities.KT
+    spread = COMPRESSIBILITY * quantities.PER_GPA * VOLUME * kT
+    mixed = 1e-4 * EXPANSION * kT * plan.TEMPERATURE * VOLUME
+    hot = (1e-3 * CAPACITY - 3 * quantities.REAL.boltzmann) * kT * plan.TEMPERATURE * MOLECULES
+    for series in plan.TARGETS:
         ours = series in plan.LONG.values()
-        change = COMPRESSIBILITY / water.PER_GPA * (series.pressure - 1.0) * compressed
+        change = COMPRESSIBILITY * 1.01325e-4 * (series.pressure - 1.0) * compressed
         for start in range(1, COUNT + 1):
-            mean = VOLUME + 0.05 * np.sqrt(spread) * rng.normal()
+            volume, enthalpy = VOLUME + 0.05 * np.sqrt(spread) * rng.normal(), -2450.0 + 0.05 * np.sqrt(hot) * rng.normal()
             sample = runs.Sample(
-                *(series.model, series.method, series.dt, series.pressure, start, 0, "abc", "-1.5", 100.0, 4000),
+                *(series.model, series.method, series.dt, series.pressure, series.ensemble, series.temperature, start, 0, "abc", "-1.5", 100.0, 4000),
                 density=plan.PUBLISHED[series.model] * np.exp(change) + ours * density + 2e-4 * rng.normal(),
-                volume=mean,
-                volume2=mean**2 + spread * volume2,
                 energy=-11.0 + 0.002 * rng.normal(),
+                volume=volume,
+                volume2=volume**2 + spread,
+                enthalpy=enthalpy,
+                enthalpy2=enthalpy**2 + hot,
+                mixed=volume * enthalpy + mixed,
+                measured=1.0,
                 translation=298.0 + 0.5 * rng.normal() + ours * warmer,
                 rotation=298.0 + 0.5 * rng.normal(),
                 drift=0.0,
+                normal=298.0,
+                dipole=299.0,
+                hydrogens=297.0,
+                moment2=30.0,
+                diffusion=0.2 + 0.01 * rng.normal(),
+                turning=2.3,
             )
             samples.append(sample)
     return samples
 
 
-def test_compressibilities():
+def near(found, expected, least=0.0):
+    """True if a (value, error) is within four errors of a number."""
+    return abs(found[0] - expected) <= 4 * found[1] + least
+
+
+def test_fluctuations():
+    ours = water.of_series(made_up())[plan.LONG["tip4p"]]
+    texts = [quantity.name for quantity in quantities.FLUCTUATIONS]
+    found = dict(zip(texts, (quantity.of(ours) for quantity in quantities.FLUCTUATIONS)))
+    expected = {"compressibility": COMPRESSIBILITY, "expansion": EXPANSION, "heat capacity": CAPACITY, "diffusion": 2.0}
+    assert all(near(found[name], value) and found[name][1] < 0.1 * value for name, value in expected.items())
+    assert not any(near(found[name], 2 * value) for name, value in expected.items())
+    assert found["rotation time"][0] == pytest.approx(2.3)
+    # 4 pi C <M^2> / (3 V kT), with C = 332.06 kcal/mol A/e^2
+    assert found["dielectric constant"][0] == pytest.approx(1 + 4 * math.pi * 332.06371 * 30 / (3 * 6470 * 0.592188), rel=1e-3)
+
+
+def test_two_pressures():
     found = water.of_series(made_up())
-    value, error = water.jackknife(found[plan.LONG["spce"]], water.fluctuating)
-    assert value == pytest.approx(COMPRESSIBILITY, abs=4 * error) and error < 0.01
-    value, error = water.by_two_pressures(*(found[series] for series in plan.COMPRESSED))
+    value, error = quantities.by_two_pressures(*(found[series] for series in plan.COMPRESSED))
     assert value == pytest.approx(COMPRESSIBILITY, abs=4 * error) and error < 0.01
 
 
 def test_errors_of_a_jackknife_are_those_of_a_mean():
     numbers = list(np.random.default_rng(1).normal(size=20))
-    value, error = water.jackknife(numbers, np.mean)
+    value, error = quantities.jackknife(numbers, np.mean)
     assert value == pytest.approx(np.mean(numbers)) and error == pytest.approx(np.std(numbers, ddof=1) / 20**0.5)
+    assert all(math.isnan(x) for x in quantities.jackknife([], np.mean)) and quantities.cell((math.nan, math.nan)) == "–"
+
+
+def test_extrapolation_removes_an_error_of_second_order():
+    samples = made_up()[:COUNT]
+    fine, coarse = ([replace(s, density=1.0 + 0.01 * h**2 + 1e-4 * k) for k, s in enumerate(samples)] for h in (1.0, 2.0))
+    (exact, _), (mean, error) = quantities.DENSITY.of(samples), quantities.DENSITY.of(fine)
+    found = quantities.extrapolated(fine, coarse, quantities.DENSITY)
+    assert found[0] == pytest.approx(1.0 + 1e-4 * np.mean(range(COUNT))) and found[1] == pytest.approx(error * math.sqrt(17) / 3)
+
+
+def test_the_maximum_of_a_parabola():
+    """Densities on a parabola with the expansion of the samples: errors of the stated size scatter its maximum by 1 K."""
+    samples = water.of_series(made_up())[plan.LONG["tip4p"]]
+    needed, rng = quantities.needed_for_maximum(samples), np.random.default_rng(6)
+    curvature = 0.998 * 1e-4 * quantities.EXPANSION.of(samples)[0] / (plan.TEMPERATURE - plan.MAXIMUM)
+    warm = np.array(plan.FITTED) - plan.MAXIMUM
+    found = []
+    for _ in range(2000):
+        second, first, _ = np.polyfit(warm, -0.5 * curvature * warm**2 + needed * rng.normal(size=5), 2)
+        found.append(-first / (2 * second))
+    assert np.median(np.abs(found)) == pytest.approx(0.6745, rel=0.15)
+
+
+def test_costs():
+    seconds = {plan.OURS: 0.003, plan.SHAKE: 0.002}
+    found = list(water.costs(seconds).values())
+    assert found[0] == pytest.approx(0.003e6 / 2) and found[1] == pytest.approx(0.002e6 / 0.5)
+    # (4 s(1 fs) + s(2 fs))^2 / 9 has its minimum at lengths in proportion to s / sqrt(cost)
+    fine, coarse = 0.002e6, 0.001e6
+    shares = np.linspace(0.01, 0.99, 9999)
+    least = np.min((fine * shares + coarse * (1 - shares)) * (16 / shares + 1 / (1 - shares)) / 9)
+    assert found[2] == pytest.approx(least, rel=1e-6)
+    table = water.cost_table(water.of_series(made_up()), {name: [x, 1.1 * x] for name, x in seconds.items()})
+    assert table.rows[0][-1] == "1" and table.rows[1][-1].startswith("2.6667")
 
 
 def test_a_quarter_of_the_error_takes_sixteen_times_as_long():
     samples = made_up()[:COUNT]
-    _, error = water.mean(samples, water.density)
-    assert water.duration(samples, water.density, error) == pytest.approx(COUNT * 0.1)
-    assert water.duration(samples, water.density, error / 4) == pytest.approx(16 * COUNT * 0.1)
+    _, error = quantities.DENSITY.of(samples)
+    assert quantities.duration(samples, quantities.DENSITY, error) == pytest.approx(COUNT * 0.1)
+    assert quantities.duration(samples, quantities.DENSITY, error / 4) == pytest.approx(16 * COUNT * 0.1)
+
+
+def test_the_next_run_is_of_the_series_that_lacks_most():
+    assert {series for series, number in runs.next_runs([], len(plan.TARGETS))} == set(plan.TARGETS)
+    samples = [one for one in made_up() if one.series != plan.SHORT]
+    assert runs.next_runs(samples, 2) == [(plan.SHORT, 1), (plan.SHORT, 2)]
+    least = min(plan.TARGETS, key=lambda series: 1 / plan.TARGETS[series])
+    assert runs.next_runs(made_up(), 1) == [(least, COUNT + 1)]
 
 
 def test_samples_come_back(tmp_path):
@@ -60,5 +136,64 @@ def test_samples_come_back(tmp_path):
     runs.write_samples(samples, tmp_path / "samples.csv")
     back = runs.read_samples(tmp_path / "samples.csv")
     assert [sample.series for sample in back] == [sample.series for sample in samples]
-    assert back[2].volume2 == pytest.approx(samples[2].volume2, rel=1e-9) and back[0].start == 1
+    assert back[2].volume2 == pytest.approx(samples[2].volume2, rel=1e-11) and back[0].start == 1
     assert runs.read_samples(tmp_path / "nothing.csv") == []
+
+
+# --- the dump ------------------------------------------------------------------------------------
+ATOMS = np.array([[0, 0, 0], [0.756950327, 0.585882277, 0], [-0.756950327, 0.585882277, 0]])
+MASSES, CHARGES = np.array([15.9994, 1.008, 1.008]), (-1.1128, 0.5564, 0.5564)
+ARMS = ATOMS - MASSES @ ATOMS / MASSES.sum()
+
+
+def write_dump(path, turns, axis, rate, centers=None):
+    """Dump with a frame per 96 fs: molecules at ``turns`` (F, B) that rotate about an axis of their own at a rate per fs.
+
+    ``centers`` (F, B, 3), apart from each other by default.
+    """
+    if centers is None:
+        centers = np.tile(6.0 * np.arange(len(turns[0]))[:, None], (len(turns), 1, 3))
+    with path.open("w") as file:
+        for frame, poses in enumerate(turns):
+            file.write(f"ITEM: UNITS\nreal\nITEM: TIME\n{96.0 * frame}\nITEM: TIMESTEP\n{48 * frame}\nITEM: NUMBER OF ATOMS\n{3 * len(poses)}\n")
+            file.write("ITEM: BOX BOUNDS pp pp pp\n0 20\n0 20\n0 20\nITEM: ATOMS id mol type q mass xu yu zu vx vy vz\n")
+            for b, pose in enumerate(poses):
+                x, v = pose.apply(ARMS) + centers[frame][b], pose.apply(np.cross(rate * np.eye(3)[axis], ARMS))
+                for k in range(3):
+                    numbers = " ".join(f"{one:.12g}" for one in (CHARGES[k], MASSES[k], *x[k], *v[k]))
+                    file.write(f"{3 * b + k + 1} {b + 1} {1 + (k > 0)} {numbers}\n")
+
+
+@pytest.mark.parametrize("axis, name", list(enumerate(["hydrogens", "dipole", "normal"])))
+def test_temperatures_by_axis(tmp_path, axis, name):
+    rng = np.random.default_rng(3)
+    turns = [[Rotation.random(random_state=rng) for _ in range(3)] for _ in range(7)]
+    write_dump(tmp_path / "sites.dump", turns, axis, 0.02)
+    moment = MASSES @ (np.sum(ARMS**2, axis=1) - ARMS[:, axis] ** 2)
+    temperature = 48.88821291**2 * moment * 0.02**2 / 0.0019872067
+    parts = frames.read_motion(tmp_path / "sites.dump", "tip4p", 2)
+    assert len(parts) == 2
+    for part in parts:
+        found = {one: getattr(part, one) for one in ("hydrogens", "dipole", "normal")}
+        assert found.pop(name) == pytest.approx(temperature, rel=1e-6)
+        assert all(abs(one) < 1e-6 * temperature for one in found.values())
+        assert math.isnan(part.diffusion) and math.isnan(part.turning)
+
+
+def test_dipole_moment_of_tip4p(tmp_path):
+    """2.305 D = 0.480 e Angstrom for each of two parallel molecules (Abascal and Vega 2005)."""
+    write_dump(tmp_path / "sites.dump", [[Rotation.identity()] * 2] * 5, 0, 0.0)
+    assert frames.read_motion(tmp_path / "sites.dump", "tip4p", 1)[0].moment2 == pytest.approx((2 * 2.305 / 4.80320) ** 2, rel=1e-3)
+
+
+def test_diffusion_and_rotation_of_random_walks(tmp_path):
+    """A step of the rotation by random vectors of variance s in each direction decays P2 by exp(-3 s) a frame."""
+    rng, number, bodies, square = np.random.default_rng(4), 401, 24, 0.012
+    centers = np.cumsum(0.1 * rng.normal(size=(number, bodies, 3)), axis=0)
+    turns = [[Rotation.identity()] * bodies]
+    for _ in range(number - 1):
+        turns.append([Rotation.from_rotvec(math.sqrt(square) * rng.normal(size=3)) * pose for pose in turns[-1]])
+    write_dump(tmp_path / "sites.dump", turns, 0, 0.0, centers)
+    part = frames.read_motion(tmp_path / "sites.dump", "tip4p", 1)[0]
+    assert part.turning == pytest.approx(0.096 / (3 * square), rel=0.25)
+    assert part.diffusion == pytest.approx(0.1**2 / 2 / 0.096, rel=0.25)

@@ -1,6 +1,7 @@
-"""Water at constant pressure: density, temperatures and compressibility, and their dependence on the time step.
+"""Water at constant pressure: averages, fluctuations and motion, and their dependence on the time step.
 
-plan.py (sizes of the runs), runs.py (LAMMPS' runs and the stored samples), and here the results from samples.
+plan.py (sizes of the runs), runs.py (LAMMPS' runs and the stored samples), frames.py (motion of the molecules),
+quantities.py (quantities from samples), and here the results.
 """
 
 import math
@@ -8,69 +9,104 @@ import math
 import numpy as np
 
 from benchmarks.engine import Finding, Measurement, Study, Table
-from benchmarks.engine.statistics import allowed, mean_of_blocks, with_error
+from benchmarks.engine.panels import Curve, Panel
+from benchmarks.engine.statistics import allowed
 
-from .plan import COMPRESSED, LONG, METHODS, MODELS, OURS, PUBLISHED, ROUND, SHORT, TEMPERATURE
-from .runs import BOLTZMANN, measure
+from . import quantities
+from .plan import COLD, COMPRESSED, EXTRAPOLATED, FIXED, LONG, METHODS, MODELS, OURS, PUBLISHED, SHAKE, SHORT, TARGETS, TEMPERATURE
+from .quantities import AVERAGES, COMPRESSIBILITY, DENSITY, ENERGY, FLUCTUATIONS, PRESSURE, WARMER, cell, difference, duration
+from .runs import measure
 
-#: 1/atm in 1/GPa, and kcal/mol/A^3 in atm
-PER_GPA, ATMOSPHERES = 1.0 / 1.01325e-4, 68568.415
-#: constant energy within rigid molecules, which the scene of SPC/E includes, kcal/mol: two O-H of 1 A and one H-H
-WITHIN_MOLECULE = {
-    "spce": 332.06371 * 0.4238**2 * (1 / (2 * math.sin(math.radians(109.47) / 2)) - 4),
-    "tip4p": 0.0,
-}
 #: standard errors that a comparison of time steps needs: K, g/mL (3e-4 of the density), kcal/mol (0.02 kJ/mol)
-NEEDED = {"T translation − T rotation": 0.3, "density": 3e-4, "potential energy": 0.02 / 4.184}
+NEEDED = {WARMER: 0.3, DENSITY: 3e-4, ENERGY: 0.02 / 4.184}
 #: number of values that are compared with expected ones; it determines the largest deviation allowed
-COMPARED = 6
+COMPARED = 9
+RICHARDSON = f"{METHODS[SHAKE]}, extrapolated from 1 and 2 fs"
 
 
 def of_series(samples):
     """Series -> list of its samples, in the order of the plan."""
-    return {series: [sample for sample in samples if sample.series == series] for series in ROUND}
+    return {series: [sample for sample in samples if sample.series == series] for series in TARGETS}
 
 
-def mean(samples, read):
-    """(mean, standard error) of ``read(sample)``; no error with fewer than three samples."""
-    values = np.array([read(sample) for sample in samples])
-    if len(values) < 3:
-        return float(values.mean()), math.nan
-    found = mean_of_blocks(values)
-    return float(found.value), float(found.error)
+def at_atmosphere(found, model=None):
+    """The series at 1 atm that have samples, of one model or all; by model and method, the longest step first."""
+    chosen = [one for one in found if one.usual and found[one] and model in (None, one.model)]
+    return sorted(chosen, key=lambda one: (list(MODELS).index(one.model), list(METHODS).index(one.method), -one.dt))
 
 
-def text(found, sign=""):
-    """A (value, error) as a cell."""
-    value, error = found
-    return with_error(value, error, sign) if error > 0 else f"{value:{sign}.4f}"
+def table(found, chosen, lengths=True):
+    """A row with the ``chosen`` quantities for each series at 1 atm, and for Richardson's extrapolation."""
+    rows = []
+    for series in at_atmosphere(found):
+        samples = found[series]
+        cells = [f"{sum(s.ps for s in samples) / 1000:.2f}"] if lengths else []
+        rows.append([MODELS[series.model].title, series.text, *cells, *(quantity.text(samples) for quantity in chosen)])
+    both = [found[series] for series in EXTRAPOLATED]
+    cells = [cell(quantities.extrapolated(*both, quantity), quantity.sign) for quantity in chosen]
+    rows.append([MODELS[SHORT.model].title, RICHARDSON, *(["–"] if lengths else []), *cells])
+    return Table(("model", "method and step", *(["ns"] if lengths else []), *(quantity.title for quantity in chosen)), rows)
 
 
-def jackknife(samples, read):
-    """(value, error) of ``read(list of samples)`` from all samples and from all but each."""
-    n, value = len(samples), read(samples)
-    if n < 3:
-        return value, math.nan
-    others = np.array([read(samples[:k] + samples[k + 1 :]) for k in range(n)])
-    return value, float(np.sqrt((n - 1) / n * np.sum((others - others.mean()) ** 2)))
+def durations(found):
+    """Length of each series at 1 atm that is required for the errors NEEDED, in ns."""
+    rows = []
+    for series in at_atmosphere(found):
+        cells = [f"{duration(found[series], quantity, error):.2g}" for quantity, error in NEEDED.items()]
+        rows.append([MODELS[series.model].title, series.text, *cells])
+    header = [f"{quantity.name}, ± {error:.2g} {quantity.unit}" for quantity, error in NEEDED.items()]
+    return Table(("model", "method and step", *header), rows)
 
 
-def fluctuating(samples):
-    """Isothermal compressibility from the variance of the volume, 1/GPa."""
-    volume, square = (np.mean([getattr(s, name) for s in samples]) for name in ("volume", "volume2"))
-    return PER_GPA * (square - volume**2) / (volume * BOLTZMANN * TEMPERATURE * ATMOSPHERES)
+def square_per_ns(found, quantity):
+    """Square of the standard error of a quantity after 1 ns, the mean over the series of TIP4P/2005 at 1 atm by their lengths."""
+    lengths, squares = [], []
+    for series in at_atmosphere(found, SHORT.model):
+        lengths.append(sum(sample.ps for sample in found[series]) / 1000)
+        squares.append(quantity.of(found[series])[1] ** 2 * lengths[-1])
+    return float(np.average(squares, weights=lengths))
 
 
-def by_two_pressures(low, high):
-    """(value, error) of the same from the densities at two pressures."""
-    (small, e_small), (large, e_large) = (mean(samples, density) for samples in (low, high))
-    apart = high[0].pressure - low[0].pressure
-    return PER_GPA * math.log(large / small) / apart, PER_GPA * math.hypot(e_small / small, e_large / large) / apart
+def per_square(seconds, method, dt):
+    """Seconds for 1 ns with a method and step: the cost for an error whose square after 1 ns is one."""
+    return seconds[method] * 1e6 / dt
 
 
-def difference(one, other):
-    """(value, error) of the difference of two (value, error)."""
-    return one[0] - other[0], math.hypot(one[1], other[1])
+def extrapolated_per_square(seconds):
+    """The same with Richardson's extrapolation, if both runs have the lengths with the smallest error."""
+    fine, coarse = (math.sqrt(per_square(seconds, series.method, series.dt)) for series in EXTRAPOLATED)
+    return (4 * fine + coarse) ** 2 / 9
+
+
+def costs(seconds):
+    """Method and step -> seconds for 1 ns, for those whose averages have no visible error of the step."""
+    found = {one.text: per_square(seconds, one.method, one.dt) for one in (LONG["tip4p"], SHORT)}
+    return found | {RICHARDSON: extrapolated_per_square(seconds)}
+
+
+def cost_table(found, rounds):
+    """Core-hours for the errors NEEDED, and the factor relative to our fix with its error from the rounds of timing."""
+    least = {method: min(seconds) for method, seconds in rounds.items()}
+    ours, rows = LONG["tip4p"].text, []
+    for name, cost in costs(least).items():
+        each = [costs(dict(zip(rounds, seconds))) for seconds in zip(*rounds.values())]
+        factors = [one[name] / one[ours] for one in each]
+        error = float(np.std(factors, ddof=1) / math.sqrt(len(factors))) if len(factors) > 1 else math.nan
+        hours = [cost * square_per_ns(found, quantity) / error**2 / 3600 for quantity, error in NEEDED.items()]
+        factor = (cost / costs(least)[ours], error) if name != ours else (1.0, math.nan)
+        rows.append([name, *(f"{h:.2g}" for h in hours), cell(factor) if name != ours else "1"])
+    header = [f"{quantity.name}, ± {error:.2g} {quantity.unit}" for quantity, error in NEEDED.items()]
+    return Table(("method and step", *header, "relative cost"), rows)
+
+
+def for_maximum(found, rounds):
+    """(error of the densities in g/mL, core-hours) of ``fix gear/quat`` for a temperature of maximum density to 1 K.
+
+    Densities at the coldest and warmest of five temperatures are taken to need as long as those of COLD and LONG.
+    """
+    needed = quantities.needed_for_maximum(found[LONG["tip4p"]])
+    ns = np.mean([duration(found[series], DENSITY, needed) for series in (LONG["tip4p"], COLD[0])])
+    return needed, 5 * ns * per_square({OURS: min(rounds[OURS])}, OURS, 2.0) / 3600
 
 
 def widest(error, *groups):
@@ -79,93 +115,75 @@ def widest(error, *groups):
     return error * allowed(COMPARED, freedoms) if freedoms > 1 else math.nan
 
 
-def density(sample):
-    """In g/mL."""
-    return sample.density
-
-
-def energy(sample):
-    """Potential energy per molecule without the energy within it, kcal/mol."""
-    return sample.energy - WITHIN_MOLECULE[sample.model]
-
-
-def warmer(sample):
-    """Temperature of translation minus temperature of rotation."""
-    return sample.translation - sample.rotation
-
-
-def table(found):
-    """A row for each series at 1 atm."""
-    rows = []
-    for series, samples in found.items():
-        if series.pressure != 1.0 or not samples:
-            continue
-        cells = [f"{sum(s.ps for s in samples) / 1000:.2f}", text(mean(samples, density))]
-        cells += [text(mean(samples, energy)), text(mean(samples, warmer), "+")]
-        cells.append(text(jackknife(samples, fluctuating)))
-        rows.append([MODELS[series.model].title, series.text, *cells])
-    header = ["model", "method and step", "ns", "density, g/mL", "potential energy, kcal/mol", "T translation − T rotation, K"]
-    return Table((*header, "compressibility, 1/GPa"), rows)
-
-
-def duration(samples, read, error):
-    """Nanoseconds after which the standard error of ``read(sample)`` is ``error``: it falls with their square root."""
-    return sum(sample.ps for sample in samples) / 1000 * (mean(samples, read)[1] / error) ** 2
-
-
-def durations(found):
-    """Length of each series at 1 atm that is required for the errors NEEDED, in ns."""
-    rows = []
-    for series, samples in found.items():
-        if series.pressure == 1.0 and samples:
-            cells = [f"{duration(samples, read, error):.2g}" for read, error in zip((warmer, density, energy), NEEDED.values())]
-            rows.append([MODELS[series.model].title, series.text, *cells])
-    units = ("K", "g/mL", "kcal/mol")
-    header = [f"{name}, ± {error:.2g} {unit}" for (name, error), unit in zip(NEEDED.items(), units)]
-    return Table(("model", "method and step", *header), rows)
-
-
 def measurements(found):
     """Measurements with their bounds."""
     rows = []
     for model, series in LONG.items():
-        value, error = mean(found[series], density)
+        value, error = DENSITY.of(found[series])
         most, right = 0.002 + 2 * error, PUBLISHED[model]
         bounds = {"remark": f"published: {right}", "least": right - most, "most": right + most}
         what = f"density of {MODELS[model].title}, {series.text}"
         rows.append(Measurement(what, value, error, ".5f", "g/mL", **bounds))
-    for what, read, unit in (("density", density, "g/mL"), ("energy", energy, "kcal/mol")):
-        both = [found[series] for series in (LONG["tip4p"], SHORT)]
-        apart = difference(*(mean(samples, read) for samples in both))
+    for quantity, pair, where, digits in (
+        (DENSITY, (LONG["tip4p"], SHORT), "", 5),
+        (DENSITY, COLD, f" at {COLD[0].temperature:g} K", 5),
+        (ENERGY, (LONG["tip4p"], SHORT), "", 5),
+        (PRESSURE, FIXED, " at constant volume", 0),
+    ):
+        both = [found[series] for series in pair]
+        apart = difference(*(quantity.of(samples) for samples in both))
         most = widest(apart[1], *both)
-        words = f"{what} of {MODELS['tip4p'].title}, {LONG['tip4p'].text}, minus {SHORT.text}"
-        rows.append(Measurement(words, *apart, ".5f", unit, least=-most, most=most))
+        words = f"{quantity.name} of {MODELS['tip4p'].title}{where}, {pair[0].text}, minus {pair[1].text}"
+        rows.append(Measurement(words, *apart, f".{digits}f", quantity.unit, least=-most, most=most))
     squeezed = [found[series] for series in COMPRESSED]
-    apart = difference(jackknife(found[LONG["spce"]], fluctuating), by_two_pressures(*squeezed))
-    most, remark = widest(apart[1], *squeezed), f"the latter: {text(by_two_pressures(*squeezed))}"
+    apart = difference(COMPRESSIBILITY.of(found[LONG["spce"]]), quantities.by_two_pressures(*squeezed))
+    most, remark = widest(apart[1], *squeezed), f"the latter: {cell(quantities.by_two_pressures(*squeezed))}"
     words = "compressibility of SPC/E water from fluctuations minus compressibility from two pressures"
     rows.append(Measurement(words, *apart, ".3f", "1/GPa", remark, least=-most, most=most))
-    for series, samples in found.items():
-        value, error = mean(samples, warmer)
-        most = widest(error, samples)
-        bounds = {"least": -most, "most": most} if series.method == OURS and series.pressure == 1 else {}
-        words = f"T translation − T rotation, {MODELS[series.model].title}, {series.text}, {series.pressure:g} atm"
+    for series in at_atmosphere(found):
+        value, error = WARMER.of(found[series])
+        most = widest(error, found[series])
+        bounds = {"least": -most, "most": most} if series.method == OURS else {}
+        words = f"T translation − T rotation, {MODELS[series.model].title}, {series.text}"
         rows.append(Measurement(words, value, error, ".2f", "K", **bounds))
     return rows
 
 
-def find(samples):
-    """Finding of the samples."""
-    found = of_series(samples)
-    context = {"samples": len(samples), "ps": samples[0].ps, "runs": len({(s.series, s.start) for s in samples}), "methods": METHODS, "temperature": TEMPERATURE}
-    context |= {"molecules": MODELS["tip4p"].molecules, "ns": sum(s.ps for s in samples) / 1000}
+def panels(found):
+    """Panels of the difference of temperatures and of the density of TIP4P/2005 against the step."""
+    shown = []
+    for quantity in (WARMER, DENSITY):
+        curves = []
+        for method, color in ((OURS, "second"), (SHAKE, "rigid")):
+            of_method = sorted((s for s in at_atmosphere(found, "tip4p") if s.method == method), key=lambda s: s.dt)
+            values, errors = np.array([quantity.of(found[series]) for series in of_method]).T
+            steps = np.array([series.dt for series in of_method])
+            label = METHODS[method].replace("`", "")
+            curves.append(Curve(label, steps, values, color, "-", "o", errors))
+        shown.append(Panel(quantity.name, "step, fs", quantity.title, curves, log="", legend=quantity is WARMER))
+    return shown
+
+
+def find(results):
+    """Finding of Results."""
+    samples, found = results.samples, of_series(results.samples)
+    context = {"samples": len(samples), "ps": samples[0].ps, "runs": len({(s.series, s.start) for s in samples})}
+    context |= {"temperature": TEMPERATURE, "molecules": MODELS["tip4p"].molecules, "ns": sum(s.ps for s in samples) / 1000}
     context["compressibility"] = [
-        text(jackknife(found[LONG["spce"]], fluctuating)),
-        text(by_two_pressures(*(found[series] for series in COMPRESSED))),
+        COMPRESSIBILITY.text(found[LONG["spce"]]),
+        cell(quantities.by_two_pressures(*(found[series] for series in COMPRESSED))),
     ]
     context["pressures"] = [series.pressure for series in COMPRESSED]
-    context["commits"] = sorted({s.commit for s in samples})
-    return Finding(measurements(found), {"water": table(found), "durations": durations(found)}, context=context)
+    context["fixed"] = [PRESSURE.text(found[series]) for series in FIXED]
+    context["apart"] = cell(difference(*(PRESSURE.of(found[series]) for series in FIXED)), "+")
+    context["cold"] = [DENSITY.text(found[series]) for series in COLD]
+    context["cold_apart"] = cell(difference(*(DENSITY.of(found[series]) for series in COLD)), "+")
+    context["cold_temperature"] = COLD[0].temperature
+    context["maximum"] = for_maximum(found, results.seconds)
+    tables = {"water": table(found, AVERAGES), "fluctuations": table(found, FLUCTUATIONS, lengths=False)}
+    tables |= {"durations": durations(found), "costs": cost_table(found, results.seconds)}
+    pictures = {"water": panels(found)}
+    return Finding(measurements(found), tables, pictures, context)
 
 
 STUDY = Study("water", "Water at constant pressure", 3600.0, measure, find)

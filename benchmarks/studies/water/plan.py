@@ -15,19 +15,31 @@ OURS, SHAKE = "gear", "shake"
 METHODS = {OURS: "`fix gear/quat`", SHAKE: "`fix shake` and `fix npt`"}
 
 
+#: ensembles: constant pressure, or the constant volume of the data file
+NPT, NVT = "npt", "nvt"
+
+
 @dataclass(frozen=True)
 class Series:
-    """Samples of one model with one method, time step in fs and pressure in atm."""
+    """Samples of one model with one method and time step in fs, in an ensemble; ``pressure`` in atm counts in NPT only."""
 
     model: str
     method: str
     dt: float
     pressure: float = 1.0
+    ensemble: str = NPT
+    temperature: float = TEMPERATURE
 
     @property
     def name(self):
         """Name in file names."""
-        return f"{self.model}_{self.method}_{self.dt:g}fs_{self.pressure:g}atm"
+        where = f"{self.pressure:g}atm" if self.ensemble == NPT else self.ensemble
+        return f"{self.model}_{self.method}_{self.dt:g}fs_{where}_{self.temperature:g}K"
+
+    @property
+    def usual(self):
+        """True at constant pressure, 1 atm and TEMPERATURE."""
+        return self.ensemble == NPT and self.pressure == 1.0 and self.temperature == TEMPERATURE
 
     @property
     def text(self):
@@ -38,39 +50,54 @@ class Series:
 #: pressures whose densities give the compressibility at 1 atm
 APART = 500.0
 COMPRESSED = tuple(Series("spce", OURS, 2.0, pressure) for pressure in (1.0 - APART, 1.0 + APART))
-#: series for comparison: the long step, and the short step of another method with a small bias
+#: series for comparison: the long step of ours; a short step, and the two steps of Richardson's extrapolation
 LONG = {model: Series(model, OURS, 2.0) for model in MODELS}
-SHORT = Series("tip4p", SHAKE, 0.5)
-#: Series -> number of runs in each round
-ROUND = {
-    LONG["tip4p"]: 2,
-    LONG["spce"]: 2,
-    COMPRESSED[0]: 1,
-    COMPRESSED[1]: 1,
-    Series("tip4p", OURS, 3.0): 1,
-    Series("tip4p", SHAKE, 2.0): 1,
-    SHORT: 1,
+SHORT, EXTRAPOLATED = Series("tip4p", SHAKE, 0.5), (Series("tip4p", SHAKE, 1.0), Series("tip4p", SHAKE, 2.0))
+#: a long and a short step at constant volume, whose pressures are compared
+FIXED = tuple(Series("tip4p", OURS, dt, ensemble=NVT) for dt in (2.0, 0.5))
+#: the same long and short step as above in cold water
+COLD = tuple(Series("tip4p", method, dt, temperature=250.0) for method, dt in ((OURS, 2.0), (SHAKE, 0.5)))
+#: published temperature of maximum density of TIP4P/2005 (Abascal and Vega 2005), K; temperatures of a fit that finds it
+MAXIMUM, FITTED = 278.0, (255.0, 266.5, 278.0, 289.5, 301.0)
+#: Series -> nanoseconds that it should have; the series that lacks the largest part comes next
+TARGETS = {
+    LONG["tip4p"]: 4.0,
+    Series("tip4p", OURS, 3.0): 2.0,
+    EXTRAPOLATED[1]: 2.0,
+    EXTRAPOLATED[0]: 1.5,
+    SHORT: 1.5,
+    FIXED[0]: 0.5,
+    FIXED[1]: 0.5,
+    LONG["spce"]: 1.0,
+    COMPRESSED[0]: 0.5,
+    COMPRESSED[1]: 0.5,
+    COLD[0]: 1.0,
+    COLD[1]: 0.5,
 }
+#: number of runs between two looks at the clock
+BATCH = 6
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Durations in ps of a run: ``settle`` before samples, ``duration`` of ``blocks`` samples, ``every`` between rows.
+    """Durations in ps of a run: ``settle`` before samples (three times as long in cold water), ``duration`` of ``blocks`` samples, ``every`` between rows.
 
-    ``hours``: no further round begins after this time.  ``equilibration``: steps for a start.
+    ``hours``: no further batch of runs begins after this time.  ``frame``: between frames of the dump, in ps.
+    ``equilibration``: steps for a start.  ``timed``: steps and rounds of the timing.
     """
 
     hours: float = 1.0
     settle: float = 20.0
     duration: float = 100.0
     every: float = 0.024
+    frame: float = 0.096
     equilibration: int = 3000
     blocks: int = 5
+    timed: tuple = (1000, 5)
 
-    @property
-    def lengths(self):
+    def lengths(self, series):
         """Variable of the deck -> picoseconds."""
-        return {"settle": self.settle, "steps": self.duration}
+        return {"settle": self.settle * (1 if series.temperature == TEMPERATURE else 3), "steps": self.duration}
 
 
-QUICK = Plan(0.0, 0.1, 0.72, 0.024, 200)
+QUICK = Plan(0.0, 0.1, 0.72, 0.024, 0.048, 200, timed=(40, 2))

@@ -17,7 +17,8 @@ from benchmarks.engine import Job, provenance
 from benchmarks.studies.liquids.runs import equilibrate, template
 from benchmarks.studies.liquids.plan import Plan as Starts
 
-from .plan import METHODS, MODELS, OURS, QUICK, ROUND, TEMPERATURE, Plan, Series
+from .frames import read_motion
+from .plan import BATCH, METHODS, MODELS, OURS, QUICK, TARGETS, TEMPERATURE, Plan, Series
 
 FOLDER = Path(__file__).parent
 SAMPLES = FOLDER / "samples.csv"
@@ -33,15 +34,18 @@ class Sample:
     """Means over a part of a run.
 
     ``start``: number of its start; ``block``: number of the part, from 0.  ``trajectory``: see the docstring of this
-    module.  ``ps``: duration.  ``rows``: number of averaged rows.  ``density`` in g/mL, ``volume`` in A^3 and ``volume2``,
-    its square; ``energy``: potential energy in kcal/mol per molecule; temperatures in kelvin; ``drift`` of the
-    conserved energy in kcal/mol/ps.
+    module.  ``ps``: duration.  ``rows``: number of averaged rows.  ``density`` in g/mL; ``volume`` in A^3; ``energy``:
+    potential energy in kcal/mol per molecule; ``enthalpy``: potential energy + pressure x volume in kcal/mol, with the
+    pressure of the series; ``volume2``, ``enthalpy2`` and ``mixed``: squares of both and their product; ``measured``: pressure in
+    atm; temperatures in kelvin; ``drift`` of the conserved energy in kcal/mol/ps.  The others as in Motion.
     """
 
     model: str
     method: str
     dt: float
     pressure: float
+    ensemble: str
+    temperature: float
     start: int
     block: int
     commit: str
@@ -49,17 +53,35 @@ class Sample:
     ps: float
     rows: int
     density: float
+    energy: float
     volume: float
     volume2: float
-    energy: float
+    enthalpy: float
+    enthalpy2: float
+    mixed: float
+    measured: float
     translation: float
     rotation: float
     drift: float
+    normal: float
+    dipole: float
+    hydrogens: float
+    moment2: float
+    diffusion: float
+    turning: float
 
     @property
     def series(self):
         """The Series it belongs to."""
-        return Series(self.model, self.method, self.dt, self.pressure)
+        return Series(*(getattr(self, field.name) for field in fields(Series)))
+
+
+@dataclass(frozen=True)
+class Results:
+    """All samples, and method -> ``seconds`` per step at constant pressure and 2 fs on one rank, in rounds."""
+
+    samples: list
+    seconds: dict
 
 
 def read_samples(path):
@@ -77,35 +99,41 @@ def write_samples(samples, path):
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([field.name for field in fields(Sample)])
-        writer.writerows([f"{x:.10g}" if isinstance(x, float) else x for x in astuple(one)] for one in samples)
+        writer.writerows([f"{x:.12g}" if isinstance(x, float) else x for x in astuple(one)] for one in samples)
 
 
 def job(series, data, number, plan):
-    """Job of one sample."""
-    liquid, every = MODELS[series.model], round(1000 * plan.every / series.dt)
-    steps = {name: every * math.ceil(1000 * length / (every * series.dt)) for name, length in plan.lengths.items()}
-    variables = {"liquid": liquid.key, "data": data, "pair": liquid.pair, "kspace": liquid.kspace}
-    variables |= {"temperature": TEMPERATURE, "pressure": series.pressure, "method": series.method}
-    variables |= {"dt": series.dt, "every": every, "seed": number, **steps}
-    return Job(FOLDER / "in.water", variables, sum(steps.values()), plugin=series.method == OURS)
+    """Job of one run."""
+    every = round(1000 * plan.every / series.dt)
+    steps = {name: every * math.ceil(1000 * length / (every * series.dt)) for name, length in plan.lengths(series).items()}
+    variables = {"every": every, "frame": round(1000 * plan.frame / series.dt), "seed": number, **steps}
+    return Job(FOLDER / "in.water", _of_series(series, data) | variables, sum(steps.values()), plugin=series.method == OURS)
+
+
+def _of_series(series, data):
+    """Variables of in.water."""
+    liquid = MODELS[series.model]
+    variables = {"liquid": liquid.key, "data": data, "pair": liquid.pair, "kspace": liquid.kspace, "dt": series.dt}
+    return variables | {name: getattr(series, name) for name in ("temperature", "pressure", "method", "ensemble")}
 
 
 def read(finished, series, number, origin, blocks):
     """List of the Samples of a finished run; ``origin``: commit, and the identifier of its trajectory."""
     thermo = {name: np.array(column)[1:] for name, column in finished.thermo.items()}
-    length = len(thermo["Time"]) // blocks
+    length, motions = len(thermo["Time"]) // blocks, read_motion(finished.dump, series.model, blocks)
     parts = [{name: column[k * length :][:length] for name, column in thermo.items()} for k in range(blocks)]
-    return [_sample(part, series, (number, k, *origin)) for k, part in enumerate(parts)]
+    return [_sample(part, series, (number, k, *origin), motion) for k, (part, motion) in enumerate(zip(parts, motions))]
 
 
-def _sample(thermo, series, origin):
+def _sample(thermo, series, origin, motion):
     molecules, turn, time = MODELS[series.model].molecules, thermo["c_rotation"], thermo["Time"] / 1000
     moving = 2 * thermo["KinEng"] / BOLTZMANN - 3 * molecules * turn
-    means = [thermo["Density"], thermo["Volume"], thermo["Volume"] ** 2, thermo["PotEng"] / molecules]
-    means += [moving / (3 * molecules - 3), turn]
-    numbers = [float(np.mean(values)) for values in means]
-    ps = len(time) * float(time[1] - time[0])
-    return Sample(*astuple(series), *origin, ps, len(turn), *numbers, float(np.polyfit(time, thermo["Econserve"], 1)[0]))
+    volume, ps = thermo["Volume"], len(time) * float(time[1] - time[0])
+    enthalpy = thermo["PotEng"] + PRESSURE_VOLUME * series.pressure * volume
+    means = [thermo["Density"], thermo["PotEng"] / molecules, volume, volume**2, enthalpy, enthalpy**2, volume * enthalpy]
+    means += [thermo["Press"], moving / (3 * molecules - 3), turn]
+    numbers = [float(np.mean(values)) for values in means] + [float(np.polyfit(time, thermo["Econserve"], 1)[0])]
+    return Sample(*astuple(series), *origin, ps, len(turn), *numbers, *astuple(motion))
 
 
 def trajectories(lab):
@@ -117,34 +145,51 @@ def trajectories(lab):
     variables = {"liquid": liquid.key, "pair": liquid.pair, "kspace": liquid.kspace, "temperature": TEMPERATURE}
     lab.many({"lattice": Job(FOLDER / "in.lattice", variables | {"template": template(liquid), "seed": 4711}, 1, plugin=False)})
     data = lab.dump("lattice").with_suffix(".data").resolve()
-    variables |= {"data": data, "pressure": 1.0, "dt": 2.0, "settle": 0, "steps": TOLD_AFTER, "every": TOLD_AFTER, "seed": 0}
-    jobs = {method: Job(FOLDER / "in.water", variables | {"method": method}, TOLD_AFTER) for method in METHODS}
+    told = {method: Series("tip4p", method, 2.0) for method in METHODS}
+    steps = {"settle": 0, "steps": TOLD_AFTER, "every": TOLD_AFTER, "frame": TOLD_AFTER, "seed": 0}
+    jobs = {method: Job(FOLDER / "in.water", _of_series(series, data) | steps, TOLD_AFTER) for method, series in told.items()}
     found = lab.many({f"told_{method}": job for method, job in jobs.items()})
     return {method: f"{found[f'told_{method}'].thermo['PotEng'][-1]:.6f}" for method in METHODS}
 
 
+def timed(lab, data, plan):
+    """Method -> seconds per step on one rank, a list with one entry for each round; the methods run in turn."""
+    steps, rounds = plan.timed
+    sizes = {"settle": 0, "steps": steps, "every": steps, "frame": steps, "seed": 0}
+    jobs = {method: Job(FOLDER / "in.water", _of_series(Series("tip4p", method, 2.0), data) | sizes, steps) for method in METHODS}
+    return {method: [run.log.seconds / steps for run in runs] for method, runs in lab.in_turn(jobs, rounds).items()}
+
+
+def next_runs(samples, number):
+    """List of (Series, number of start) of the next runs: each time the series that lacks the largest part of its target."""
+    ps, starts, chosen = dict.fromkeys(TARGETS, 0.0), dict.fromkeys(TARGETS, 0), []
+    for sample in samples:
+        ps[sample.series] += sample.ps
+        starts[sample.series] = max(starts[sample.series], sample.start)
+    for _ in range(number):
+        series = min(TARGETS, key=lambda one: ps[one] / TARGETS[one])
+        ps[series] += Plan.duration
+        starts[series] += 1
+        chosen.append((series, starts[series]))
+    return chosen
+
+
 def measure(lab, plan=None):
-    """List of all samples with the same trajectory, samples of earlier calls first."""
+    """Results; samples of earlier calls come first."""
     plan = plan or (QUICK if lab.quick else Plan(hours=lab.hours))
-    kept = [] if lab.quick else read_samples(SAMPLES)
-    told = trajectories(lab)
-    samples = [sample for sample in kept if sample.trajectory == told[sample.method]]
-    commit, begun = provenance.commit("src", "benchmarks/studies/water"), time.monotonic()
-    first = 1 + max((sample.start for sample in samples), default=0)
-    while True:
-        numbers, data = range(first, first + max(ROUND.values())), {}
-        for series, count in ROUND.items():
-            enough = time.monotonic() - begun > 3600 * plan.hours
-            if enough and {sample.series for sample in samples} == set(ROUND):
-                return samples
-            if not data:
-                data = equilibrate(lab, Starts(equilibration=plan.equilibration), MODELS.values(), numbers)
-            jobs = {n: job(series, data[series.model, n], n, plan) for n in numbers[:count]}
-            named = {f"{series.name}_{n}": made for n, made in jobs.items()}
-            finished = lab.many(named, keep=True)
-            origin = commit, told[series.method]
-            for n in jobs:
-                samples += read(finished[f"{series.name}_{n}"], series, n, origin, plan.blocks)
-            if not lab.quick:
-                write_samples(samples, SAMPLES)
-        first = numbers[-1] + 1
+    told, begun = trajectories(lab), time.monotonic()
+    samples = [] if lab.quick else [one for one in read_samples(SAMPLES) if one.trajectory == told[one.method]]
+    commit, starts = provenance.commit("src", "benchmarks/studies/water"), Starts(equilibration=plan.equilibration)
+    seconds = timed(lab, equilibrate(lab, starts, [MODELS["tip4p"]], [1])["tip4p", 1], plan)
+    while time.monotonic() - begun < 3600 * plan.hours or {sample.series for sample in samples} < set(TARGETS):
+        chosen = next_runs(samples, len(TARGETS) if lab.quick else BATCH)
+        data = equilibrate(lab, starts, MODELS.values(), sorted({number for _, number in chosen}))
+        jobs = {f"{series.name}_{n}": job(series, data[series.model, n], n, plan) for series, n in chosen}
+        finished = lab.many(jobs, keep=True)
+        for series, n in chosen:
+            samples += read(finished[f"{series.name}_{n}"], series, n, (commit, told[series.method]), plan.blocks)
+        if not lab.quick:
+            write_samples(samples, SAMPLES)
+            for run in finished.values():
+                run.dump.unlink()
+    return Results(samples, seconds)

@@ -1,0 +1,166 @@
+"""Averages, fluctuations and motion of water from samples, with standard errors from the scatter of the samples."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.constants import Avogadro, calorie
+
+from benchmarks.engine.statistics import with_error
+from gearquat_analysis.units import UNITS
+
+from .frames import AXES
+from .plan import FITTED, MAXIMUM, MODELS, TEMPERATURE
+
+REAL = UNITS["real"]
+KT = REAL.boltzmann * TEMPERATURE
+#: kcal/mol/A^3 in 1/GPa
+PER_GPA = 1.0 / (1e30 * 1e3 * calorie / Avogadro * 1e-9)
+#: energy of the charges of a rigid molecule of SPC/E, which its forces include, kcal/mol: two O-H of 1 A and one H-H
+WITHIN_MOLECULE = {
+    "spce": REAL.coulomb * 0.4238**2 * (1 / (2 * math.sin(math.radians(109.47) / 2)) - 4),
+    "tip4p": 0.0,
+}
+
+
+def average(samples, name):
+    """Mean of one value of the samples, weighted equally: they have equal lengths."""
+    return float(np.mean([getattr(sample, name) for sample in samples]))
+
+
+def energy(samples):
+    """Potential energy per molecule without the energy within it, kcal/mol."""
+    return average(samples, "energy") - WITHIN_MOLECULE[samples[0].model]
+
+
+def warmer(samples):
+    """Temperature of translation minus temperature of rotation."""
+    return average(samples, "translation") - average(samples, "rotation")
+
+
+def compressibility(samples):
+    """Isothermal, from the variance of the volume, 1/GPa."""
+    volume = average(samples, "volume")
+    return (average(samples, "volume2") - volume**2) / (volume * KT) / PER_GPA
+
+
+def expansion(samples):
+    """Thermal expansion from the covariance of volume and configurational enthalpy, 1e-4/K."""
+    volume, enthalpy = average(samples, "volume"), average(samples, "enthalpy")
+    return 1e4 * (average(samples, "mixed") - volume * enthalpy) / (volume * KT * TEMPERATURE)
+
+
+def heat_capacity(samples):
+    """At constant pressure, of classical molecules, cal/mol/K: the kinetic part is exact, 3 k."""
+    variance = average(samples, "enthalpy2") - average(samples, "enthalpy") ** 2
+    return 1e3 * (3 * REAL.boltzmann + variance / (KT * TEMPERATURE * MODELS[samples[0].model].molecules))
+
+
+def dielectric_constant(samples):
+    """Static, from the fluctuation of the dipole moment with conducting boundaries."""
+    return 1.0 + 4 * math.pi * REAL.coulomb * average(samples, "moment2") / (3 * average(samples, "volume") * KT)
+
+
+def mean_of(name, factor=1.0):
+    """A function of samples: the mean of one value."""
+    return lambda samples: factor * average(samples, name)
+
+
+def colder(name):
+    """A function of samples: temperature of translation minus temperature of the rotation about an axis."""
+    return lambda samples: average(samples, "translation") - average(samples, name)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What is read from samples: its ``name`` with its ``unit``; ``read(list of samples)``; ``sign``: "+" for differences."""
+
+    name: str
+    unit: str
+    read: Callable
+    sign: str = ""
+
+    def of(self, samples):
+        """(value, standard error); NaN without samples, and for an error from fewer than three."""
+        return jackknife(samples, self.read)
+
+    def text(self, samples):
+        """Value and error as a cell."""
+        return cell(self.of(samples), self.sign)
+
+    @property
+    def title(self):
+        """With its unit."""
+        return f"{self.name}, {self.unit}" if self.unit else self.name
+
+
+def jackknife(samples, read):
+    """(value, error) of ``read(list of samples)`` from all samples and from all but each."""
+    n = len(samples)
+    if not n:
+        return math.nan, math.nan
+    value = read(samples)
+    if n < 3:
+        return value, math.nan
+    others = np.array([read(samples[:k] + samples[k + 1 :]) for k in range(n)])
+    return value, float(np.sqrt((n - 1) / n * np.sum((others - others.mean()) ** 2)))
+
+
+def cell(found, sign=""):
+    """A (value, error) as a cell."""
+    value, error = found
+    if math.isnan(value):
+        return "–"
+    return with_error(value, error, sign) if error > 0 else f"{value:{sign}.4f}"
+
+
+DENSITY = Quantity("density", "g/mL", mean_of("density"))
+ENERGY = Quantity("potential energy", "kcal/mol", energy)
+WARMER = Quantity("T translation − T rotation", "K", warmer, "+")
+AXIS = [Quantity(f"T translation − T rotation about {axis}", "K", colder(name), "+") for axis, name in zip(AXES, ("normal", "dipole", "hydrogens"))]
+COMPRESSIBILITY = Quantity("compressibility", "1/GPa", compressibility)
+EXPANSION = Quantity("expansion", "1e-4/K", expansion)
+PRESSURE = Quantity("pressure", "atm", mean_of("measured"))
+AVERAGES = [DENSITY, ENERGY, WARMER, *AXIS]
+FLUCTUATIONS = [
+    COMPRESSIBILITY,
+    EXPANSION,
+    Quantity("heat capacity", "cal/mol/K", heat_capacity),
+    Quantity("dielectric constant", "", dielectric_constant),
+    Quantity("diffusion", "1e-9 m²/s", mean_of("diffusion", 10.0)),
+    Quantity("rotation time", "ps", mean_of("turning")),
+]
+
+
+def by_two_pressures(low, high):
+    """(value, error) of the compressibility from the densities at two pressures, 1/GPa."""
+    (small, e_small), (large, e_large) = DENSITY.of(low), DENSITY.of(high)
+    apart = (high[0].pressure - low[0].pressure) * 1.01325e-4
+    return math.log(large / small) / apart, math.hypot(e_small / small, e_large / large) / apart
+
+
+def extrapolated(fine, coarse, quantity):
+    """(value, error) of a quantity without the error of second order, from steps h and 2 h (Richardson)."""
+    (value, error), (other, apart) = quantity.of(fine), quantity.of(coarse)
+    return (4 * value - other) / 3, math.hypot(4 * error, apart) / 3
+
+
+def difference(one, other):
+    """(value, error) of the difference of two (value, error)."""
+    return one[0] - other[0], math.hypot(one[1], other[1])
+
+
+def needed_for_maximum(samples):
+    """Standard error of densities, g/mL, with which a fit gives the temperature of maximum density to 1 K.
+
+    Five temperatures FITTED and a parabola are assumed.  Its curvature follows from the thermal expansion of the samples at
+    TEMPERATURE, which grows in proportion to the distance from the MAXIMUM.
+    """
+    curvature = DENSITY.of(samples)[0] * 1e-4 * EXPANSION.of(samples)[0] / (TEMPERATURE - MAXIMUM)
+    return abs(curvature) * float(np.sqrt(np.sum((np.array(FITTED) - np.mean(FITTED)) ** 2)))
+
+
+def duration(samples, quantity, error):
+    """Nanoseconds after which the standard error of a quantity is ``error``: it falls with their square root."""
+    return sum(sample.ps for sample in samples) / 1000 * (quantity.of(samples)[1] / error) ** 2
