@@ -133,7 +133,7 @@ def test_the_last_scaling_of_a_run_is_not_lost_or_taken_twice(lmp_wheel):
 @pytest.mark.parametrize("ranks", [1, 4])
 def test_a_scaling_that_tears_bodies_ends_the_run(lmp_wheel, ranks):
     group = "group oxygen type 1\nfix bath oxygen temp/rescale 1 300 300 1 1.0"
-    message = "velocities that fix bath (temp/rescale) gave to atoms of body 27 in step 1 are not"
+    message = "velocities that fix bath (temp/rescale) gave to atoms of body 27 in step 1 do not"
     result = lmp_wheel.refuse(molecules(lmp_wheel, group, steps=20), message, ranks=ranks)
     assert len(set(result.errors)) == 1
 

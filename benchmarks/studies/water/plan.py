@@ -100,4 +100,4 @@ class Plan:
         return {"settle": self.settle * (1 if series.temperature == TEMPERATURE else 3), "steps": self.duration}
 
 
-QUICK = Plan(0.0, 0.1, 0.72, 0.024, 0.048, 200, timed=(40, 2))
+QUICK = Plan(0.0, 0.024, 0.24, 0.024, 0.048, 200, timed=(20, 2))
