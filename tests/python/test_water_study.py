@@ -20,7 +20,7 @@ def made_up(density=0.0, warmer=0.0, compressed=1.0):
     Means of volume and enthalpy are correlated, and their fluctuations within a sample give the constants above.
     """
     rng, samples, kT = np.random.default_rng(5), [], quantities.KT
-    spread = COMPRESSIBILITY * quantities.PER_GPA * VOLUME * kT
+    spread = 6.9477 * COMPRESSIBILITY * VOLUME * kT  # 1 kcal/mol/A^3 is 6.9477 GPa
     mixed = 1e-4 * EXPANSION * kT * plan.TEMPERATURE * VOLUME
     hot = (1e-3 * CAPACITY - 3 * quantities.REAL.boltzmann) * kT * plan.TEMPERATURE * MOLECULES
     for series in plan.TARGETS:

@@ -15,7 +15,7 @@ from .plan import FITTED, MAXIMUM, MODELS, TEMPERATURE
 
 REAL = UNITS["real"]
 KT = REAL.boltzmann * TEMPERATURE
-#: kcal/mol/A^3 in 1/GPa
+#: A^3/(kcal/mol) in 1/GPa
 PER_GPA = 1.0 / (1e30 * 1e3 * calorie / Avogadro * 1e-9)
 #: energy of the charges of a rigid molecule of SPC/E, which its forces include, kcal/mol: two O-H of 1 A and one H-H
 WITHIN_MOLECULE = {
@@ -42,7 +42,7 @@ def warmer(samples):
 def compressibility(samples):
     """Isothermal, from the variance of the volume, 1/GPa."""
     volume = average(samples, "volume")
-    return (average(samples, "volume2") - volume**2) / (volume * KT) / PER_GPA
+    return (average(samples, "volume2") - volume**2) / (volume * KT) * PER_GPA
 
 
 def expansion(samples):
