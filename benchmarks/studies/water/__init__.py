@@ -13,7 +13,8 @@ from benchmarks.engine.panels import Curve, Panel
 from benchmarks.engine.statistics import allowed
 
 from . import quantities
-from .plan import COLD, COMPRESSED, EXTRAPOLATED, FIXED, LONG, METHODS, MODELS, OURS, PUBLISHED, SHAKE, SHORT, TARGETS, TEMPERATURE
+from .plan import COLD, COMPRESSED, EXTRAPOLATED, FIXED, LONG, METHODS, MODELS, OURS, PUBLISHED, SHAKE, SHORT, TARGETS
+from .plan import TEMPERATURE
 from .quantities import AVERAGES, COMPRESSIBILITY, DENSITY, ENERGY, FLUCTUATIONS, PRESSURE, WARMER, cell, difference, duration
 from .runs import measure
 

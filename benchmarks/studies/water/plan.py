@@ -80,9 +80,10 @@ BATCH = 6
 
 @dataclass(frozen=True)
 class Plan:
-    """Durations in ps of a run: ``settle`` before samples (three times as long in cold water), ``duration`` of ``blocks`` samples, ``every`` between rows.
+    """Durations in ps of a run: ``settle`` before samples (three times as long in cold water), ``duration`` of ``blocks``
+    samples, ``every`` between rows, ``frame`` between frames of the dump.
 
-    ``hours``: no further batch of runs begins after this time.  ``frame``: between frames of the dump, in ps.
+    ``hours``: no further batch of runs begins after this time.
     ``equilibration``: steps for a start.  ``timed``: steps and rounds of the timing.
     """
 

@@ -118,11 +118,14 @@ def cell(found, sign=""):
 DENSITY = Quantity("density", "g/mL", mean_of("density"))
 ENERGY = Quantity("potential energy", "kcal/mol", energy)
 WARMER = Quantity("T translation − T rotation", "K", warmer, "+")
-AXIS = [Quantity(f"T translation − T rotation about {axis}", "K", colder(name), "+") for axis, name in zip(AXES, ("normal", "dipole", "hydrogens"))]
+BY_AXIS = [
+    Quantity(f"T translation − T rotation about {axis}", "K", colder(name), "+")
+    for axis, name in zip(AXES, ("normal", "dipole", "hydrogens"))
+]
 COMPRESSIBILITY = Quantity("compressibility", "1/GPa", compressibility)
 EXPANSION = Quantity("expansion", "1e-4/K", expansion)
 PRESSURE = Quantity("pressure", "atm", mean_of("measured"))
-AVERAGES = [DENSITY, ENERGY, WARMER, *AXIS]
+AVERAGES = [DENSITY, ENERGY, WARMER, *BY_AXIS]
 FLUCTUATIONS = [
     COMPRESSIBILITY,
     EXPANSION,
