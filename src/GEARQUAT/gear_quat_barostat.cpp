@@ -325,10 +325,9 @@ void Barostat::find_friction(const Integrator &integrator, int pass)
   note_box();
 }
 
-/// At the present poses and in their box.
-void Barostat::note_drive()
+/// now: the drive at the present poses and in their box.
+void Barostat::note_drive(const Upper &now)
 {
-  const Upper now = drive();
   for (int k = 0; k < Upper::SIZE; ++k)
     if (std::isfinite(now[k])) strongest[k] = std::max(strongest[k], std::fabs(now[k]));
 }

@@ -174,7 +174,7 @@ class Barostat : public Thermostat {
   void warn_of_box(const std::string &when, double h);
   void watch_mesh();
   void refuse_box() const;
-  void note_drive();
+  void note_drive(const Upper &now);
   double period_for_drive(double omega) const;
   double period_for_box(double h) const;
   void set_heat(const Scheme &scheme);

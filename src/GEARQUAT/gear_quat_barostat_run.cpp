@@ -173,9 +173,10 @@ void Barostat::begin_start(const StartNodes &nodes)
     held_box =
         chain.is_stiff(target_of_box(0.0, nodes.h), twice, nodes.h, nodes.collocation.pairs());
   }
-  note_drive();
+  const Upper now = drive();
+  note_drive(now);
   friction_of_box = friction_now();
-  const Upper second = CellHistory::acceleration(matrix, rate, drive(), friction_of_box);
+  const Upper second = CellHistory::acceleration(matrix, rate, now, friction_of_box);
   nodes.collocation.begin<Upper::SIZE>(matrix.m.data(), (rate * matrix).scaled(s).m.data(),
                                        second.scaled(s * s).m.data(), cell_at_nodes);
   nodes.collocation.begin(0.0, twice_kinetic_of_box(), twice_box_at_nodes);
@@ -253,9 +254,10 @@ void Barostat::seed_local(double h, int terms)
 {
   Thermostat::seed_local(h, terms);
   if (chain_acts()) chain.begin_settled(target_of_box(0.0, h), twice_kinetic_of_box(), h);
-  note_drive();
+  const Upper now = drive();
+  note_drive(now);
   friction_of_box = friction_now();
-  const Upper second = CellHistory::acceleration(matrix, rate, drive(), friction_of_box);
+  const Upper second = CellHistory::acceleration(matrix, rate, now, friction_of_box);
   Upper series[3] = {matrix, (rate * matrix).scaled(h), second.scaled(0.5 * h * h)};
   cell.seed(series[0].m.data(), terms, h, h);
   const double of_heat[2] = {heat.value(), h * rate_of_heat()};
@@ -335,8 +337,9 @@ double Barostat::longest_step() const
 
 void Barostat::watch_box(double h)
 {
-  frequency.note(drive(), rate, masses(), h);
-  note_drive();
+  const Upper now = drive();
+  frequency.note(now, rate, masses(), h);
+  note_drive(now);
   watch_mesh();
   if (warned_box || changing_step || !frequency.is_settled()) return;
   if (frequency.part(h) >= BoxFrequency::WARNED)

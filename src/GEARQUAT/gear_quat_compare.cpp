@@ -25,9 +25,8 @@ using namespace GearQuat;
 static constexpr double SAME_MASS = 1.0e-11;      // relative; sums run in another order
 static constexpr double SAME_MOMENTS = 1.0e-9;    // relative; arms have the rounding of positions
 static constexpr double ROUNDING = 1.0e-13;       // of positions
-static constexpr double SAME_SHAPE =
-    1.0e-3;    // of distances; files may have positions of few digits
-static constexpr double SAME_PLACE = 1.0e-6;    // of positions
+static constexpr double SAME_SHAPE = 1.0e-3;      // of distances; files may have few digits
+static constexpr double SAME_PLACE = 1.0e-6;      // of positions
 
 /* ----------------------------------------------------------------------
    counts of the atoms of all bodies

@@ -116,8 +116,7 @@ void Extended::refuse(const std::vector<int> &atoms) const
         FLERR,
         "Fix gear/quat: atom {} is {}, which this plugin cannot turn, because it was "
         "compiled without the headers for that; compile GEARQUAT for the source tree of your "
-        "LAMMPS: "
-        "cmake -B build -D LAMMPS_SOURCE_DIR=/path/to/lammps",
+        "LAMMPS: cmake -B build -D LAMMPS_SOURCE_DIR=/path/to/lammps",
         found[2], SHAPES[shape]);
 }
 
