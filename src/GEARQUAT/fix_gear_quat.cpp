@@ -100,7 +100,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   count_rows();
   size_array_rows_variable = !args->mol.empty();    // rows may be requested before they exist
 
-  // last, because LAMMPS would call back a fix whose constructor has failed
+  // callbacks last, because LAMMPS would call a fix whose constructor has failed
   extlist = new int[size_vector]{1, 1};
   for (int n = 0; n < motion->elements(); ++n) extlist[Sums::ELEMENTS + n] = motion->extensive(n);
   atom->add_callback(Atom::GROW);
@@ -257,7 +257,7 @@ void FixGearQuat::pre_exchange()
 void FixGearQuat::pre_neighbor()
 {
   update_bodies();
-  if (driven_box->any()) ownership->note_box();    // fix deform may have flipped it
+  if (driven_box->any()) ownership->note_box();    // fix deform may have flipped the box
   count_rows();
 }
 

@@ -104,7 +104,7 @@ class FixGearQuat : public Fix {
   void *extract(const char *, int &) override;
 
  private:
-  // in the order in which they depend on each other; a constructor that ends in an error frees them
+  // each object depends only on the ones before it; if the constructor fails, all are freed
   std::unique_ptr<GearQuat::Arguments> args;
   std::unique_ptr<GearQuat::Fleet> fleet;
   std::unique_ptr<GearQuat::Bodies> bodies;
@@ -121,14 +121,14 @@ class FixGearQuat : public Fix {
   std::unique_ptr<GearQuat::Sums> sums;
   std::unique_ptr<GearQuat::Extract> extracts;
 
-  std::vector<GearQuat::StatedMolecule> stated;    // by molecules of the template
+  std::vector<GearQuat::StatedMolecule> stated;    // one for each molecule of the template
 
-  bool met_atoms = false;        // bodies were compared with the atoms in a run before
-  bool told_of_ids = false;      ///< of changed molecule IDs
-  bool reported = false;         // the scene, once
-  bool min_projected = false;    // forces, before the first evaluation of a minimization
-  int min_vflag = 0;             // of the present evaluation in a minimization
-  bool motion_acts = true;    // before the next step: velocities of other fixes, contacts, a start
+  bool met_atoms = false;        // an earlier run has compared bodies and atoms
+  bool told_of_ids = false;      ///< a warning about changed molecule IDs was given
+  bool reported = false;         // the report was printed
+  bool min_projected = false;    // forces were projected before a minimization begins
+  int min_vflag = 0;             // vflag of the current evaluation in a minimization
+  bool motion_acts = true;       // the next step begins with actions of Motion
 
   void create_bodies();
   void update_bodies();

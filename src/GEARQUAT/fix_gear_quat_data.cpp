@@ -101,7 +101,7 @@ void FixGearQuat::write_restart(FILE *fp)
 
 void FixGearQuat::write_restart_file(const char *file)
 {
-  if (!met_atoms) return;    // the atoms may still be changed by the user
+  if (!met_atoms) return;    // the user may still change the atoms
   show_bodies();
   restarts->write_bodies(fmt::format("{}.{}.gear_quat", file, id), array_local);
 }
@@ -111,7 +111,7 @@ void FixGearQuat::restart(char *buf)
   restarts->read(buf);
 }
 
-/// The bodies of a restart file continue if the command makes the same ones.
+/// The bodies of a restart file continue if the command creates the same bodies.
 void FixGearQuat::resume()
 {
   if (!restarts->was_read()) return;

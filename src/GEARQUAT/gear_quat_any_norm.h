@@ -5,17 +5,17 @@
 
 /* Quaternions of any length, in the second-order formulation.
 
-   A projection onto |q| = 1 after each step changes only rows 0 and 1 of a history.  It makes the
-   method irreversible, and at long steps it causes half of the energy drift.  With
-   Scheme::any_norm() there is no projection: the equation of q is valid for any length
-   (gear_quat_math.h), a weak spring keeps the length close to 1, and sites use q/|q|.  This
-   requires three things:
+   A projection onto |q| = 1 after each step changes only rows 0 and 1 of a history.  This
+   projection makes the method irreversible, and causes half of the energy drift at long steps.
+   With Scheme::any_norm() there is no projection: the equation of q is valid for any length
+   (gear_quat_math.h), a weak spring keeps the length close to 1, and sites use q/|q|.  Three
+   measures are required:
 
-     - residuals use the pose at which the torque was evaluated, the predicted one;
+     - residuals use the predicted pose, at which the torque was evaluated;
      - passes are repeated until the residual converges, unless their number is given;
      - a body that turns fast is unstable in this equation.  Between two speeds of rotation, in
-       radians per step, Eq. 6 with its projection gradually replaces it; beyond them Eq. 6 is used
-       alone, with its two passes.  Five values are stable without it. */
+       radians per step, Eq. 6 with its projection gradually replaces it; for faster rotation Eq. 6
+       is used alone, with its two passes.  Five values need no replacement. */
 
 #ifndef GEAR_QUAT_ANY_NORM_H
 #define GEAR_QUAT_ANY_NORM_H
@@ -40,7 +40,7 @@ class AnyNorm {
     }
   }
 
-  static constexpr double STIFFNESS = 0.2 * 0.2;    ///< of |q|, times h^2
+  static constexpr double STIFFNESS = 0.2 * 0.2;    ///< of the spring for |q|, times h^2
 
   /// The part of the right-hand side that is Eq. 6; 1: all of it.  rows: predicted.
   double projected_part(const double *rows) const
@@ -74,7 +74,7 @@ class AnyNorm {
     }
   }
 
-  /// The square of a residual without its radial part, which turns nothing; q: predicted.
+  /// The square of a residual without its radial part, which is no rotation; q: predicted.
   double turning2(const double *total, const double *q) const
   {
     const double radial = on ? dot4(q, total) : 0.0;

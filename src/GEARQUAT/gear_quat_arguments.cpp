@@ -161,7 +161,7 @@ void Arguments::check_conditions() const
   for (const auto &row : keyword_table()) {
     if (!given.count(row.name) || !is_on(row.name, "")) continue;
     std::string user = row.name, lacking,
-                reasons;    // all at once: fixing one error should not lead to the next
+                reasons;    // all errors at once: fixing one should not lead to the next
     for (const auto &condition : row.needs) {
       if (!is_on(row.name, condition.only_for) || is_on(condition.keyword, condition.value))
         continue;
@@ -247,7 +247,7 @@ void Arguments::check_control()
                  pressure.start[k], pressure.stop[k]);
 }
 
-/// Directions without a period have no pressure, and tilts are free only all together.
+/// Directions without a period have no pressure, and tilts can only be free together.
 void Arguments::check_pressure()
 {
   PressureWords &p = pressure;

@@ -3,12 +3,12 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The words of the fix command: which atoms make bodies, and how they are integrated.
+/* The words of the fix command, which state how atoms form bodies and how bodies are integrated.
 
    The keywords are listed in one table with one row each.  A row gives the words after the keyword,
    the default, the other keywords that it requires or excludes, its meaning, and the member that
-   stores its value.  The parser is a loop over these rows, error messages are made from them, and
-   `fix ID group gear/quat keywords` prints them for people and for programs. */
+   stores its value.  The parser is a loop over these rows, error messages are built from the rows,
+   and `fix ID group gear/quat keywords` prints the rows for people and for programs. */
 
 #ifndef LMP_GEAR_QUAT_ARGUMENTS_H
 #define LMP_GEAR_QUAT_ARGUMENTS_H
@@ -25,7 +25,7 @@ namespace LAMMPS_NS::GearQuat {
 
 struct Arguments;
 
-/// Keyword force or torque with its words: which components act on which bodies.
+/// Keyword force or torque with its words: the components that act, and the bodies.
 struct MaskWords {
   bool torque;          ///< or force
   std::string range;    ///< of bodies, counted from 1 in the order of their IDs
@@ -37,7 +37,7 @@ struct ThermostatWords {
   double start = 0.0, stop = 0.0, damp = 0.0;    ///< damp 0: none
   int length = 0;
   bool separate = false;
-  bool may_wait = false;    ///< bodies may be inserted later, so that there may be none
+  bool may_wait = false;    ///< bodies may be inserted later, so a run may start without any
 };
 
 /// Values of the pressure keywords, for the components xx yy zz yz xz xy.
@@ -205,7 +205,7 @@ const std::vector<Keyword> &keyword_table();
 /// keyword, `before`.
 const Keyword &find_keyword(LAMMPS *lmp, const std::string &name, const Keyword *before = nullptr);
 
-/// The numbers of values of a formulation that have tuned coefficients, in a row.
+/// The numbers of values of a formulation with tuned coefficients, as a list for a message.
 std::string tuned_numbers(bool first, const std::string &between);
 
 /// Returns true if `text` is an integer, and stores its value in `integer`.
@@ -247,7 +247,7 @@ struct Arguments : protected Pointers {
   Isokinetic isokinetic;
   bool rescale;
   ThermostatWords thermostat;    ///< damp 0: none
-  PressureWords pressure;        ///< none on: the box stays
+  PressureWords pressure;        ///< no component on: the box does not move
 
   /// Parses the words after the style.  Any error ends the run on all ranks with a message that
   /// gives the word and the words required.

@@ -31,7 +31,7 @@ static constexpr double ROUNDING = 1.0e-14;
 
 static constexpr bigint SMALL = 1000;
 
-// the largest number of terms of a sum whose scale bounds each term
+// the most terms in a sum whose scale bounds each term
 
 static constexpr double MANY = 524288.0;
 

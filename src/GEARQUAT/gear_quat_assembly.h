@@ -9,8 +9,8 @@
    its sites.  Every rank sums over the sites that it owns, and a few numbers per body and rank are
    sent (gear_quat_ranks.h), so that memory and messages do not grow with the sites of a body.  The
    sums do not depend on the order of the sites (gear_quat_exact_sum.h), so bodies are the same, to
-   the last bit, on any number of ranks.  The sums of a small body are plain ones in the order of the
-   atom IDs: every rank that has one of its sites receives the others. */
+   the last bit, on any number of ranks.  For a small body the sums are plain sums in the order of
+   the atom IDs: every rank that has one of its sites receives the other sites. */
 
 #ifndef LMP_GEAR_QUAT_ASSEMBLY_H
 #define LMP_GEAR_QUAT_ASSEMBLY_H
@@ -55,7 +55,7 @@ class Assembly : protected Pointers {
     double axes[9];    ///< principal, rotation matrix space -> body
   };
 
-  /// Makes the bodies.  ids: of every owned atom, 0 for none.  extended: null if all atoms are
+  /// Creates the bodies.  ids: of every owned atom, 0 for none.  extended: null if all atoms are
   /// points.  Massless bodies, and bodies in the infile that no atom belongs to, end the run on all
   /// ranks.  Collective.
   Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extended,

@@ -18,8 +18,8 @@
      U + K + sum W G_ab^2/2 + P V + S + energies of the chains,                                 (P7)
      S' = V sum (P_ab - P delta_ab) G_ab - V P' - sum (W'/2) G_ab^2,   P = sum P_aa/d
 
-   is constant.  The box (gear_quat_box.h) moves as the bodies do: it is predicted, LAMMPS evaluates
-   the forces in it, and every pass of the corrector corrects it. */
+   is constant.  The box (gear_quat_box.h) moves as the bodies do: a step predicts the box, LAMMPS
+   evaluates the forces in the predicted box, and every pass of the corrector corrects the box. */
 
 #ifndef LMP_GEAR_QUAT_BAROSTAT_H
 #define LMP_GEAR_QUAT_BAROSTAT_H
@@ -117,13 +117,13 @@ class Barostat : public Thermostat {
   CorrectorCoefficients::Array heat_coefficients;    ///< of a first-order equation
   double width = 0.0;                                ///< the step of the histories
   Upper target;                              ///< pressures of the present step, or at a node
-  Upper target_rate;                         ///< and their change with time
-  double kt = 0.0;                           ///< of the mass of the box, then
+  Upper target_rate;                         ///< change of these targets with time
+  double kt = 0.0;                           ///< of the mass of the box in that step
   Upper made_target, made_rate;              ///< of the last step before this run
   std::array<double, 2> told_of_box = {};    ///< last logged freedoms and total momentum
 
   Upper matrix, rate;    ///< M and G in the present pass, or at a node
-  struct Moving {        ///< what a step changes
+  struct Moving {        ///< variables that a step changes
     CellHistory cell;
     Chain chain;
     ScalarHistory heat;
@@ -182,7 +182,7 @@ class Barostat : public Thermostat {
   double mode_of_box() const;
   Upper drive() const;
   double rate_of_heat() const;
-  /// Components of Upper that the box may have: tilts are the last ones.
+  /// The components of Upper that may be nonzero in this box: tilts come last.
   int moving_components() const { return asked.shears() ? Upper::SIZE : 3; }
   void add_momenta(int ibody, const double *velocity, Tensor &sums, int count) const;
   void sum_momenta(const Tensor &sums);

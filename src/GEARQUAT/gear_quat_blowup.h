@@ -3,12 +3,12 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Ends a run before its first step if a body turns faster than the method can follow.  Such bodies
-   are mostly nearly linear; their smallest moment of inertia makes them spin about their axis.
-   Ends a run at the step in which a body becomes unstable, before its atoms are placed, so before a
-   dump or another fix sees them.  The fix makes the comparison for every body and step
-   (gear_quat_limits.h); this file makes the error message.  The message says what became unstable
-   first: the coupling of all bodies, else the forces, else the motion of the bodies. */
+/* Ends a run before its first step if a body turns faster than the method can follow.  Most such
+   bodies are nearly linear; their smallest moment of inertia makes them spin fast about their axis.
+   Also ends a run at the step in which a body becomes unstable, before its atoms are placed, so
+   before a dump or another fix sees them.  The fix makes the comparison for every body and step
+   (gear_quat_limits.h); this file makes the error message.  The message states what became unstable
+   first: the coupling of all bodies, otherwise the forces, otherwise the motion of the bodies. */
 
 #ifndef LMP_GEAR_QUAT_BLOWUP_H
 #define LMP_GEAR_QUAT_BLOWUP_H

@@ -7,11 +7,13 @@
    indices into them.
 
    Owned bodies come first, then copies of large bodies that other ranks own, then ghost bodies.
-   This rank moves the first two kinds and has their histories; of a ghost body it has only the data
-   that its own atoms need.  gear_quat_ownership.h determines the bodies, gear_quat_sites.h their
-   atoms.  The store itself contains neither atoms nor messages between ranks.
+   This rank moves owned bodies and copies, and has their histories; of a ghost body it has only the
+   data that the atoms of this rank need.  gear_quat_ownership.h determines the bodies,
+   gear_quat_sites.h their atoms.  The store itself contains neither atoms nor messages between
+   ranks.
 
-   Centers of mass are unwrapped: atoms are placed with their own images, so bodies need none. */
+   Centers of mass are unwrapped: atoms are placed with their own image flags, so bodies need no
+   image flags. */
 
 #ifndef LMP_GEAR_QUAT_BODIES_H
 #define LMP_GEAR_QUAT_BODIES_H
@@ -35,7 +37,7 @@ struct Body {
   double extent;    ///< largest distance of a site from the owner atom
   int from_file;    ///< mass and inertia were given, not summed
   int fresh;        ///< inserted in this step: no history yet
-  int large;        ///< on several ranks: not all of its sites can see their owner atom
+  int large;        ///< on several ranks: some sites have no ghost of the owner atom
   Mask off;         ///< components of the load that are turned off
 
   /// Displacement per radian of the outermost part of the body, a site or a part of a solid.
@@ -109,7 +111,7 @@ class Bodies {
   {
     for (auto &correction : last) correction.work = 0.0;
   }
-  /// Fresh bodies have histories now and are treated like all others.
+  /// Fresh bodies have received histories; from now on they are treated like all others.
   void take_in_fresh();
   // With a trial row: saves histories for a step that may be undone, even if bodies move to other
   // ranks in it.
@@ -136,13 +138,13 @@ class Bodies {
 
   Body &change_body(int ibody) { return body[ibody]; }
   Load &change_load(int ibody) { return load[ibody]; }
-  /// Keeps only owned bodies.
+  /// Removes all bodies except owned bodies.
   void drop_copies();
   /// Index of another body, owned or a copy of a large one; ghost bodies must not be there yet.
   int add_owned();
   int add_copy();
   int add_ghost();
-  /// Replaces this body by the last owned one.  There must be no copies.
+  /// Replaces this body by the last owned body.  There must be no copies.
   void remove_owned(int ibody);
   /// Body n becomes body from[n]; a permutation of owned bodies.  There must be no copies.
   void permute(const std::vector<int> &from);

@@ -5,8 +5,8 @@
 
 /* LAMMPS' box at any time of a start or a step, as the deformation M of a reference box:
    R = o + M (X - o), where R is a position, X the scaled position in histories, and o a fixed
-   point.  With M = 1 positions, velocities and the box have the same bits as without a moving
-   box. */
+   point.  If M = 1, positions, velocities and the box are the same to the last bit as without a
+   moving box. */
 
 #ifndef LMP_GEAR_QUAT_BOX_H
 #define LMP_GEAR_QUAT_BOX_H
@@ -24,7 +24,7 @@ class Box : protected Pointers {
   /// fixed: coordinates of the fixed point; empty: the center of the box.
   Box(LAMMPS *lmp, const std::vector<double> &fixed) : Pointers(lmp), fixed(fixed) {}
 
-  /// The present box of LAMMPS is the reference from now on: M = 1.
+  /// Makes the current box of LAMMPS the reference: M = 1.
   void refer();
   /// Sets M for the mapping of states.
   void set(const Upper &deformation);
@@ -35,7 +35,7 @@ class Box : protected Pointers {
   }
 
   /// Sets LAMMPS' box to the deformation M, with all quantities that LAMMPS derives from it.
-  /// forces: they will be evaluated in it.
+  /// forces: true if forces will be evaluated in this box.
   void show(bool forces);
 
   /// False if another command has changed LAMMPS' box since show().

@@ -4,9 +4,9 @@
 ------------------------------------------------------------------------- */
 
 /* Frequency of the oscillation of a box: the pressure drives the box, and the box changes the
-   pressure (doc/theory.md, Eq. P9).  The start measures the frequency from the forces in two boxes.
-   In a run, in equilibrium, its square is the ratio of the means of -W drive'.G and W G.G, with
-   fading sums. */
+   pressure (doc/theory.md, Eq. P9). The start measures the frequency from the forces in two boxes.
+   During a run in equilibrium, the square of the frequency is the ratio of the means of -W drive'.G
+   and W G.G, from sums in which old steps fade. */
 
 #ifndef LMP_GEAR_QUAT_BOX_FREQUENCY_H
 #define LMP_GEAR_QUAT_BOX_FREQUENCY_H

@@ -169,8 +169,8 @@ class CellHistory {
 
   explicit CellHistory(const Scheme &of_bodies) { set_scheme(of_bodies); }
 
-  /// In formulation first it has Gear's coefficients.  With a changing step, the number of values,
-  /// which otherwise changes too, is fixed here.
+  /// In formulation first it has Gear's coefficients.  With a changing step the numbers of values
+  /// of bodies change, too, but the number of this history is fixed.
   static constexpr int VALUES_OF_CHANGING_STEP = 6;
   static Scheme scheme_of(const Scheme &bodies)
   {

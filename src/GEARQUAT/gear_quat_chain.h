@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* A Nose-Hoover chain: a thermostat of M variables xi_k (1/time).  The first one is the friction of
-   all momenta that the chain acts on (doc/theory.md, Eqs. T1 to T4):
+/* A Nose-Hoover chain: a thermostat of M variables xi_k (1/time).  The first variable is the
+   friction of all momenta that the chain acts on (doc/theory.md, Eqs. T1 to T4):
 
      p' = F - xi_1 p,   L' = tau - xi_1 L                                                     (T1)
      xi_1' = (2K/(g kT) - 1)/tau^2 - xi_1 xi_2                                                (T2)
@@ -17,7 +17,7 @@
      E = sum_k Q_k xi_k^2/2 + S                                                               (T3)
      S' = kT (g xi_1 + xi_2 + ... + xi_M) - (sum_k Q_k xi_k^2/2) T'/T                         (T4)
 
-   even while the target T changes, and with it the masses.
+   even while the target T and thus the masses change.
    Sources: G. J. Martyna, M. L. Klein, M. Tuckerman, J. Chem. Phys. 97, 2635 (1992), section II,
    where p_eta_k = Q_k xi_k; the masses: G. J. Martyna, M. E. Tuckerman, D. J. Tobias, M. L. Klein,
    Mol. Phys. 87, 1117 (1996), section 2.5.  A chain with a single variable: W. G. Hoover,
@@ -95,7 +95,7 @@ class Chain {
   double friction() const { return now[0]; }
   const Variables &values() const { return now; }
 
-  /// E, Eq. T3: what the chain has taken from the bodies.
+  /// E, Eq.  T3: the energy that the chain has taken from the bodies.
   double energy(const ChainTarget &target) const { return moving(target, now) + now[length]; }
 
   /// The solution of Eqs. T2 and T4 with the initial values at the beginning of the step.
@@ -221,7 +221,7 @@ class Chain {
   }
 
   /// For a discontinuity of 2K, when velocities have changed or bodies were inserted or removed.  E
-  /// and all xi stay, and earlier sums are scaled like the last one.
+  /// and all xi do not change, and earlier sums are scaled like the last sum.
   void join(const ChainTarget &before, const ChainTarget &target, double twice_kinetic)
   {
     now[length] += moving(before, now) - moving(target, now);

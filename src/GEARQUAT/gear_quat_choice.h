@@ -10,10 +10,10 @@
 
      z^4 = sum (|h^4 y''''|^2 + |h^5 y'''''|^2) / sum (|h^2 y''|^2 + |h^3 y'''|^2).
 
-   A single vibration gives its own frequency exactly, at any phase, and many give the upper end of
-   their spectrum.  A start has computed these derivatives.  The rows of a history cannot replace
-   them: with tuned coefficients the errors of the higher rows make z up to twice as large.  Where
-   derivatives are unknown, the mean square frequency of rotations, the ratio of the sums of
+   For a single vibration z is exact at any phase; for many vibrations z corresponds to the upper
+   end of their spectrum.  A start has computed these derivatives.  The rows of a history cannot
+   replace them: with tuned coefficients the errors of the higher rows make z up to twice as large.
+   Where derivatives are unknown, the mean square frequency of rotations, the ratio of the sums of
    torque^2/I and I omega^2, is used instead.
 
    More values give a higher order, but a narrower range of frequencies that conserves energy.
@@ -51,7 +51,7 @@ class MotionSums {
     if (series.terms > 4) add_derivatives(body, rows, 3, series.terms > 5 ? 4 : 3, step);
     add_spin(body, state);
   }
-  /// Only the angular velocity of a body.
+  /// Adds only the angular velocity of a body.
   void add(const RigidBody &body, const BodyState &state) { add_spin(body, state); }
   /// A body with a known load and no derivatives.
   void add(const RigidBody &body, const BodyState &state, const double *torque_body)

@@ -59,17 +59,17 @@ class Coupling : protected Pointers {
   virtual double friction_ahead(double /*h*/) const { return 0.0; }
   /// True if degrees of freedom depend on the forces of all fixes.  Local.
   virtual bool awaits_forces() const { return false; }
-  /// The loads include all fixes.
+  /// Called when the loads include the forces of all fixes.
   virtual void meet_forces() {}
   /// The first step begins, after meet_forces().  begins: with new histories.
   virtual void begin_steps(bool /*begins*/) {}
   virtual void end_run() {}
   /// A reason for a new start of histories, null for none; after meet_forces().
   virtual const char *reason_to_start_anew() const { return nullptr; }
-  /// False if a start would lose the variables of the coupling.  Local.
+  /// False if the variables of the coupling would be lost in a start.  Local.
   virtual bool may_start_anew() const { return true; }
 
-  // a step; the following functions are for a moving box, that is, for a barostat
+  // in a step; the following functions are for a moving box, that is, for a barostat
 
   /// Histories are predicted, and states contain their scaled rows: the box becomes the predicted
   /// one, and centers and velocities of states become unscaled.
@@ -96,7 +96,7 @@ class Coupling : protected Pointers {
   virtual void correct(const Integrator &integrator, int passes) = 0;
   /// The step of length h is accepted.
   virtual void note_step(double /*h*/) {}
-  /// In an accepted step, after inserted bodies have histories and removed bodies are gone.
+  /// Called in an accepted step, after insertions have histories and removals are complete.
   virtual void follow_changes(double /*h*/) {}
   /// Other fixes have changed velocities of bodies, after measure().
   virtual void follow_velocities(double /*h*/) {}
@@ -154,8 +154,8 @@ class Coupling : protected Pointers {
 
   /// Its sections, the same on all ranks.  Local.
   virtual void write(Sections &file) const = 0;
-  /// From the same kind of coupling.  Returns the items that the file lacks, empty for none.
-  /// Local.
+  /// Reads the sections of the same kind of coupling.  Returns the items missing in the file, or an
+  /// empty text.  Local.
   virtual std::string read(const Sections &file) = 0;
 
  protected:
@@ -193,9 +193,9 @@ class Coupling : protected Pointers {
   ///   void finish(const Integrator &, const RigidBody &, double *rows)    of a corrected history
   template <class Law> void correct_by_passes(Law &law, const Integrator &integrator, int passes);
 
-  /// The part of the kinetic energy that is zero, as an adjective followed by a blank or empty for
-  /// both parts; null if none is.  separate: each part has its own friction, which scales it;
-  /// moves: the parts that have degrees of freedom.
+  /// The part of the kinetic energy that is zero, as an adjective followed by a blank; empty if
+  /// both parts are zero, null if none is zero.  separate: each part has its own friction, which
+  /// scales it; moves: the parts that have degrees of freedom.
   static const char *part_at_rest(const double (&energies)[2], const bool (&moves)[2],
                                   bool separate)
   {

@@ -44,7 +44,7 @@ class DrivenBox : protected Pointers {
 
   /// Ends the run if another fix changes the box in a way that bodies cannot follow.  Before a run.
   void init();
-  /// No other fix changes the box: before a minimization.
+  /// Called before a minimization, in which no other fix changes the box.
   void rest();
   /// True if another fix changes the box in this run.
   bool any() const { return driven; }
@@ -52,7 +52,7 @@ class DrivenBox : protected Pointers {
   /// Before and after another fix remaps atoms with the box.  Collective.
   void begin_remap();
   void end_remap();
-  /// A step has ended, and sites are placed.
+  /// Called when a step has ended and sites are placed.
   void end_step();
   /// The box may have changed without a remap.  Collective.
   void follow();

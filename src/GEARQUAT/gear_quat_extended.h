@@ -42,7 +42,7 @@ class Extended : protected Pointers {
 
   /// True if one of the atoms, on any rank, is more than a point.  Collective.
   bool any(const std::vector<int> &atoms) const;
-  /// Drop all records; keep: from now on there are records, one for each of nmax atoms.
+  /// Drop all records; keep: then allocate new records, one for each of nmax atoms.
   void reset(bool keep, int nmax);
   bool has_records() const { return kept; }
   /// Contributions of the atom itself to its body's inertia tensor (row-major) and angular
@@ -87,8 +87,8 @@ class Extended : protected Pointers {
   struct Record {    ///< an atom relative to its body
     int shape;
     int dipole;            ///< 1 if it has one
-    double moments[3];     ///< of its own, in its own frame
-    double relative[4];    ///< quaternion of its own frame in the body frame
+    double moments[3];     ///< of the atom itself, in its own frame
+    double relative[4];    ///< quaternion of this frame in the body frame
     double mu_body[3];
   };
 

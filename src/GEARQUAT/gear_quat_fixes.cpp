@@ -34,7 +34,7 @@ OtherFixes::OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Ownership &o
     Pointers(lmp),
     fix(fix), bodies(bodies), ownership(ownership), sites(sites), args(args)
 {
-  std::fill_n(noted, 3, std::numeric_limits<double>::quiet_NaN());    // different from any number
+  std::fill_n(noted, 3, std::numeric_limits<double>::quiet_NaN());    // equal to no number
 }
 
 /* ----------------------------------------------------------------------

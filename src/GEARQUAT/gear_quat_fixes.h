@@ -4,7 +4,7 @@
 ------------------------------------------------------------------------- */
 
 /* Other fixes that change velocities, positions or masses of the atoms of bodies.  Depending on the
-   effect (gear_quat_known_styles.h), bodies adopt the change, the run ends once the change occurs,
+   effect (gear_quat_known_styles.h), bodies adopt the change, the run ends when the change occurs,
    or the run does not begin.  Effects of styles that no table lists are detected by samples.
 
    The fix calls init() before every run; take_velocities() before a step, with the velocities left
@@ -42,8 +42,8 @@ class OtherFixes : protected Pointers {
   /// True if some fix may change velocities and bodies adopt the change.
   bool any_taken() const { return !taken.empty(); }
 
-  /// Rank 0 warns of fix gravity if bodies do not feel it, or feel it with other masses than their
-  /// own.  In setup(), before loads are gathered.  Collective.
+  /// Rank 0 warns of fix gravity if it does not act on bodies, or acts with masses that differ from
+  /// the masses of the bodies.  In setup(), before loads are gathered.  Collective.
   void check_gravity();
 
   /// Returns bodies on this rank whose velocities other fixes have changed at the end of that step;
@@ -51,9 +51,9 @@ class OtherFixes : protected Pointers {
   /// the run if `end`, and is otherwise ignored.  Collective.
   std::vector<int> take_velocities(bigint step, bool end);
 
-  // These are local and test a single site unless a fix is known to move atoms.  If the site still
-  // matches note_velocity() and note_place(), called right after the fix had placed it, this
-  // comparison is sufficient.
+  // These functions are local and test a single site unless a fix is known to move atoms.  It is
+  // sufficient to compare this site with note_velocity() and note_place(), which were called right
+  // after the site had been placed.
 
   void note_velocity();
   void check_velocities();
@@ -72,8 +72,8 @@ class OtherFixes : protected Pointers {
   std::vector<const Fix *> watched;    ///< these may move single atoms
   int sample = 0;                      ///< the site that is tested next
   double noted[3];                     ///< its velocity or position
-  bool warned_noise = false;           ///< of random forces and the like
-  bool warned_change = false;          ///< of a change by something unknown in this run
+  bool warned_noise = false;           ///< warned of random forces and the like
+  bool warned_change = false;          ///< warned of an unknown change in this run
 
   void tell_noise();
   void tell_noise(const std::string &forces, Noise noise);

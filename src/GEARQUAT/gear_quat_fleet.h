@@ -4,7 +4,7 @@
 ------------------------------------------------------------------------- */
 
 /* All fixes gear/quat of a run.  Their bodies act on each other, so their histories start together,
-   and a fix can look up here which atoms another one moves.  Every fix makes such a list in
+   and a fix can look up in this list which atoms another fix moves.  Every fix makes such a list in
    init(). */
 
 #ifndef LMP_GEAR_QUAT_FLEET_H
@@ -31,7 +31,7 @@ struct Fleet {
   };
   std::vector<Member> members;    ///< in the order in which they begin a step
 
-  /// Null for a fix of another style.
+  /// The fix as a fix gear/quat, null for a fix of another style.
   const Member *find(const Fix *fix) const
   {
     for (const auto &one : members)

@@ -33,7 +33,8 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// step numbers for testing a dependence on time: a multiple of all intervals and one of none
+// step numbers for testing a dependence on time: a multiple of all intervals, and a multiple of no
+// interval
 
 static constexpr bigint EVERY_TIMES = 0, AT_NO_TIMES = 1000003;
 

@@ -5,9 +5,9 @@
 
 /* Evaluation of LAMMPS' forces for the start-up.
 
-   The start-up evaluates forces at positions between steps.  Followed: pair, bonded and kspace
+   The start-up evaluates forces at positions between steps.  It follows pair, bonded and kspace
    forces of styles that depend on positions and velocities only, and the post_force() of the fixes
-   in a list (external fields, walls, springs).  Not followed, with an explanation in reason(): any
+   in a list (external fields, walls, springs).  It does not follow, and reason() explains why, any
    style that moves atoms, changes their data or draws random numbers, or that depends on the time
    or on energies and pressures, which are available at steps only.  A dependence on the time is
    measured: forces are evaluated at other steps.
@@ -76,7 +76,7 @@ class Forces : protected Pointers {
   /// Empty if forces can be followed, otherwise the reason.
   const std::string &reason() const { return why; }
 
-  /// False if there is nothing to evaluate.
+  /// False if there are no forces to evaluate.
   bool any() const { return styles || !post_force.empty(); }
 
   /// Saves all data of all atoms, including ghosts, for any atom style: positions, velocities,

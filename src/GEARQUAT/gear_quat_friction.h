@@ -5,13 +5,13 @@
 
 /* Measures the damping of bodies by forces, before a step.
 
-   Friction that can be evaluated: velocities are changed by rigid-body velocities u, and the loads
+   If forces can be evaluated, velocities are changed by rigid-body velocities u, and the loads
    change by -Gamma u.  The fastest rate of M^-1 Gamma, with the masses and moments M, follows from
    a few such changes, each along the last response.
 
-   Random forces must not be evaluated again: they are the present forces minus all others.  A
-   friction 1/tau on the velocity of each atom implies random forces of a temperature T in steps of
-   h, so that
+   Random forces must not be evaluated again; they are determined as the current forces minus all
+   other forces.  A friction 1/tau on the velocity of each atom implies random forces of a
+   temperature T in steps of h, so that
      sum f^2/m = sum m v^2/tau^2 + n 2 kT/(h tau)    for n components. */
 
 #ifndef LMP_GEAR_QUAT_FRICTION_H

@@ -64,7 +64,7 @@ struct Scheme {
   /// first pass.  The kinetic energy needs three passes to converge: with two, water at long steps
   /// is heated with five values and cooled with seven.  Faster bodies, which are projected, have as
   /// many.  With nine values, which are for short steps, a third pass would make some of these
-  /// unstable earlier.
+  /// bodies unstable earlier.
   int coupled_passes() const
   {
     return passes == 0 && any_norm() && values() < 9 ? CONVERGING_PASSES : fixed_passes();
@@ -370,7 +370,7 @@ class Kinematics {
 /// No step can be right if a body turns by half a turn in it (the poses alone do not determine the
 /// direction of the turn), if it crosses the whole simulation box, if its quaternion is so far from
 /// unit length that unprojected sites are wrong by a factor of a hundred, or if its motion is not
-/// finite.  All of this is far outside of the stable range, so only unstable runs end here:
+/// finite.  All these limits are far outside of the stable range, so only unstable runs end here:
 /// the quaternion of a free rotation is a harmonic motion with omega/2, half a turn is omega/2 h =
 /// 1.57, and all methods here are unstable beyond 1.42.
 struct MotionLimits {

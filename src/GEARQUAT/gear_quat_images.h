@@ -22,7 +22,7 @@ bool image_flag_overflow(const Domain *domain, const double *expected, const dou
                          double *turns);
 
 /// Adds to `unwrapped` (3) the overflow of the image flags that brings it nearest to `expected`
-/// (3).  It does not change without an overflow.
+/// (3).  Without an overflow `unwrapped` does not change.
 void undo_image_flag_overflow(const Domain *domain, const double *expected, double *unwrapped);
 
 /// True if the position of an atom relative to another one has changed by whole periods and has

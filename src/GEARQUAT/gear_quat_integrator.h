@@ -438,7 +438,7 @@ class Integrator : public Kinematics {
     withhold(body, rows, before, 1.0 - friction.implicit_torque(share), total);
   }
 
-  /// Undoes a part of the change of a residual, due to friction.  The radial part, which conserves
+  /// Reduces the change of a residual to account for friction.  The radial part, which conserves
   /// |q|, and a rotation about an axis without inertia have no friction.
   void withhold(const RigidBody &body, const double *rows, const double *before, double part,
                 double *total) const

@@ -8,7 +8,8 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// A third pass rarely pays, and with a number of too many digits the run would seem to hang.
+// A third pass rarely pays, and with a number of passes that has too many digits the run would seem
+// to hang.
 
 static constexpr int PASSES_MOST = 100;
 

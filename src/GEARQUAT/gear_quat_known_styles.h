@@ -4,7 +4,8 @@
 ------------------------------------------------------------------------- */
 
 /* Properties of other LAMMPS styles, looked up by name.  LAMMPS does not declare these properties,
-   so they were read from its source; every row of a table has its reason.  Where LAMMPS does
+   so they were taken from its source code; every row of a table states its reason.  Where LAMMPS
+   does
    declare them (gear_quat_declared.h), the declaration takes precedence.  The callers decide on the
    consequences.  In each table the first matching row counts.  Patterns have the syntax of
    utils::strmatch(). */
@@ -63,8 +64,8 @@ enum class ComputeFact {
 const char *known(PairFact what, const Force *force);
 const char *known(FixFact what, const Fix *fix);
 const char *known(ComputeFact what, const Compute *compute);
-/// For each style, whether its forces can be evaluated again, and the source of this information: a
-/// line each.
+/// One line for each style: whether its forces can be evaluated again, and the source of this
+/// information.
 std::vector<std::string> sources_of_repeatability(LAMMPS *lmp);
 /// The bond style whose bonds may break or change for good when they are evaluated, null for none.
 const char *unrepeatable_bond(const Force *force);

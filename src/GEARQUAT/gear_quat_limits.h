@@ -10,10 +10,10 @@
    inertia; it is found by a trial of a free rotation.
 
    Forces without derivatives are random, or due to collisions that last a single step.  The
-   derivatives that a history computes from them heat the bodies.  A force in one step alone changes
-   the velocity in the following steps by d_1, d_2, ..., whose sum is 1 in units of h F/m.  Forces
-   that are independent from step to step change the velocity in a step by sum d_k^2 times the
-   correct mean square.
+   derivatives that a history computes from them heat the bodies.  A force that acts in one step
+   only changes the velocity in the following steps by d_1, d_2, ..., whose sum is 1 in units of h
+   F/m.  Forces that are independent from step to step change the velocity in a step by sum d_k^2
+   times the correct mean square.
 
    Friction is evaluated at predicted velocities.  The accuracy of a method under friction is
    measured by the mean square of a momentum driven by random kicks, which the friction determines.

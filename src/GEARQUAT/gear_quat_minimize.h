@@ -8,9 +8,9 @@
    LAMMPS' minimizers move atoms along straight lines, by linear combinations of the forces on them.
    The forces on the atoms of a body are projected onto its rigid motions, so that these
    combinations are rigid motions, too.  Before each evaluation of the forces the body moves to the
-   pose nearest to its atoms, and the atoms move to their positions in it.  The degrees of freedom
-   of a body are thus the ones of its atoms, nothing is sent to all ranks, and rotations and
-   translations have the same measure, the displacement of the atoms.
+   pose nearest to its atoms, and the atoms move to their positions in the body.  The degrees of
+   freedom of a body are thus the degrees of freedom of its atoms, nothing is sent to all ranks, and
+   rotations and translations have the same measure, the displacement of the atoms.
 
    Bodies keep their velocities, and their angular velocities along their principal axes. */
 

@@ -173,7 +173,8 @@ void Motion::start_together(const std::vector<Motion *> &full, const std::vector
 {
   if (!std::count(needed.begin(), needed.end(), true)) return;
 
-  // Histories that could continue also start again if this gives the others a start of full order.
+  // Histories that could continue also start again if this gives the other fixes a start of full
+  // order.
 
   const bool some_go_on = std::count(needed.begin(), needed.end(), false) > 0;
   const bool together = !some_go_on || full[0]->forces_can_be_followed();
@@ -183,7 +184,7 @@ void Motion::start_together(const std::vector<Motion *> &full, const std::vector
   const bool found = Start(full[0]->lmp, starters, full[0]->step.length()).run();
   for (size_t n = 0; n < full.size(); ++n)
     if (needed[n] || (together && found)) full[n]->begin(found);
-  for (size_t n = 0; n < full.size(); ++n)    // this changes the step of all of them
+  for (size_t n = 0; n < full.size(); ++n)    // a change of the step changes the step of all fixes
     if ((found || needed[n]) && full[n]->step.tolerance)
       full[n]->step.tolerance->shorten_first_step(found);
 }

@@ -44,7 +44,7 @@ class Motion : protected Pointers {
   /// Before a step: bodies, and then their histories, adopt velocities that other fixes have given
   /// to atoms, at the end of that step if `end`.  Collective.
   void take_velocities(bigint of_step, bool end);
-  /// True before the first step of a run that LAMMPS has set up: begin_steps() has to be called.
+  /// True before the first step of a run that LAMMPS has set up; begin_steps() must then be called.
   bool begins_steps() const { return set_up; }
   /// For all fixes gear/quat together: makes histories from present loads, with the forces f and
   /// torques of all fixes, unless consistent histories exist.  If one fix needs a start, all others
@@ -90,7 +90,7 @@ class Motion : protected Pointers {
   OtherFixes &others;
   Step &step;
   std::map<tagint, Mask> masks;    ///< of the command, by the IDs of bodies
-  bool set_up = false;     ///< LAMMPS has evaluated forces for a run, no step of it has begun
+  bool set_up = false;     ///< LAMMPS has evaluated forces for a run whose first step has not begun
   bool resumed = false;    ///< histories are from a restart file
   std::string movers;      ///< IDs of the other fixes that moved atoms in the last steps
 

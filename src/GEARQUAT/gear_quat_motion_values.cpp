@@ -184,7 +184,7 @@ void Motion::look_at_contacts(double **f)
   next_look = update->ntimestep + std::max(FIRST, done / PART);
 }
 
-/// Rank 0 warns once if this is too strong for the histories.  Collective.
+/// Rank 0 warns once if this damping is too strong for the histories.  Collective.
 void Motion::tell_friction()
 {
   const ChoiceOfValues scene = scene_of(MotionSums());
@@ -211,9 +211,9 @@ void Motion::tell_friction()
       automatic ? "" : ", or values auto");
 }
 
-/// Returns why histories should start again with another number of values, null if they should not:
-/// the step, a rotation or forces have changed.  Vibrations are from the last start, since only a
-/// start measures them.  Collective.
+/// Returns the reason to start histories again with another number of values, null for none.
+/// Reasons are a change of the step, of a rotation or of forces.  Vibrations are from the last
+/// start, since only a start measures them.  Collective.
 const char *Motion::another_scheme_suits()
 {
   if (!args.automatic_values || resumed) return nullptr;

@@ -75,7 +75,7 @@ class BodyTable : protected Pointers {
   {
   }
 
-  /// Rows of owned bodies, computed at every call; the pointers stay valid until the next one.
+  /// Rows of owned bodies, computed at every call; the pointers stay valid until the next call.
   double **local();
   /// A number of the global array, 0 in rows without a body.  Rows are gathered at the first
   /// request after sites were listed or placed: collective.

@@ -37,7 +37,7 @@ double Ownership::mass_of(int i) const
   return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
 }
 
-/// On a single rank ghosts are images of its atoms; on several ranks they receive the IDs.
+/// On a single rank ghosts are images of its atoms; on several ranks ghosts receive the IDs.
 tagint Ownership::id_of(int i) const
 {
   return body_id[i < atom->nlocal ? i : atom->map(atom->tag[i])];

@@ -8,12 +8,12 @@
 
    A body belongs to the rank that owns its owner atom and migrates with it.  Ranks whose atoms
    belong to it have a ghost body: a copy of pose and velocities, found through the ghost of the
-   owner atom.  Few bodies lie across the border of two ranks, so only the owner atoms of these are
-   shared with their ghosts.
+   owner atom.  Few bodies extend across the border of two ranks, so only the owner atoms of these
+   bodies are shared with their ghosts.
 
-   A body that extends further than the cutoff of ghost atoms is large: every rank has it, with its
-   history, and moves it like its owner; its loads are summed over all ranks.  Other bodies have a
-   history only on the rank of the owner.
+   A body that extends further than the cutoff of ghost atoms is large: every rank has this body,
+   with its history, and moves it like its owner; its loads are summed over all ranks.  All other
+   bodies have a history only on the rank of the owner.
 
    The fix calls update() after every exchange of atoms, and spread_states() whenever states have
    changed, or spread_moved() if their frames were written with them. */
@@ -44,7 +44,7 @@ struct Comparison {
   tagint mass_changed = 0;        ///< a body whose atoms have another mass, center or inertia
   tagint torn = 0;                ///< a body whose atoms are now whole periods further apart
   tagint reshaped = 0;            ///< a body with other distances between its atoms
-  tagint cut = 0;                 ///< a body that another box has torn at the faces of the box
+  tagint cut = 0;                 ///< a body that a change of the box has torn at its faces
 };
 
 class Ownership : protected Pointers {
@@ -119,7 +119,7 @@ class Ownership : protected Pointers {
   bigint number_of_large() const { return nlarge; }
   /// The box of the positions of bodies, as Domain::h and boxlo.
   const std::vector<double> &box() const { return last_box; }
-  /// Sets it to the present box, or to another one.
+  /// Sets this box to the current box of LAMMPS, or to another box.
   void note_box();
   void note_box(const double *h, const double *corner);
   /// Before a run, and before atoms are exchanged: if change_box has remapped the atoms of bodies
@@ -172,12 +172,12 @@ class Ownership : protected Pointers {
   bigint natoms = 0, nlarge = 0;    ///< on all ranks
   int outside_atoms = 0;            ///< created since the fix was defined, in no body
   bool warned_outside = false;      ///< of such atoms
-  bool any_ghosts = false;          ///< an atom, on any rank, belongs to a body of another rank
+  bool any_ghosts = false;          ///< on some rank an atom belongs to a body of another rank
                                     ///< that is not large; changes only when atoms are exchanged
   std::vector<double> last_box;
   std::vector<int> owner_atom;    ///< local index of the owner atom of an owned body
   std::vector<int> index;         ///< see body_of()
-  std::vector<tagint> unseen;     ///< owner atoms that atoms on this rank cannot find
+  std::vector<tagint> unseen;     ///< owner atoms of which this rank has not even a ghost
   double peak = 0.0;              ///< bytes
 
   std::vector<tagint> large_owners;    ///< atom IDs of the owners of bodies.large, sorted

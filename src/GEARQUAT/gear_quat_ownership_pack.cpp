@@ -3,13 +3,13 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Bodies as streams of doubles: between ranks, to ghosts and back, and in restart files.  Also
-   large bodies, some of whose sites cannot find their owner atom.
+/* Bodies as streams of doubles: between ranks, to ghosts and back, and in restart files.  This file
+   also handles large bodies, some of whose sites cannot find their owner atom.
 
-   Before a run, and when their number changes, their owners send them to all ranks, with their
-   histories.  From then on every rank predicts and corrects them, from the same loads and thus to
-   the same bits, and keeps them while atoms are exchanged: the only message in a step is the sum of
-   the loads. */
+   Before a run, and when the number of large bodies changes, their owners send them to all ranks,
+   with their histories.  From then on every rank predicts and corrects large bodies, from the same
+   loads and thus to the same bits, and keeps them while atoms are exchanged: the only message in a
+   step is the sum of the loads. */
 
 #include "gear_quat_ownership.h"
 

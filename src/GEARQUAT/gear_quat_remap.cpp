@@ -44,7 +44,8 @@ struct Member {
   double expected[3], remapped[3];    ///< from the body in the old box, and mapped to the new one
 };
 
-/// Instructions to its rank: move the atom and, if it is the owner of its body, the center.
+/// Instructions to the rank of an atom: move the atom and, if it is an owner atom, the center of
+/// its body.
 struct Order {
   int local, owns;
   double way[3], center[3];

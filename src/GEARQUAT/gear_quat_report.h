@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The report: the features of this simulation, those that are off, each with its reason, and
-   avoidable costs due to the surroundings of the bodies. */
+/* The report on the features of this simulation: which are on, which are off and why, and which
+   costs due to the surroundings of the bodies are avoidable. */
 
 #ifndef LMP_GEAR_QUAT_REPORT_H
 #define LMP_GEAR_QUAT_REPORT_H
@@ -35,9 +35,9 @@ void report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Flee
                   const Bodies &bodies, Ownership &ownership, const Sites &sites);
 
 /// A part of the report: pairs of atoms that nothing moves, pairs within a body, and atoms of the
-/// fix group that no body uses, found in the neighbor lists of the pair styles.  Each is one
-/// sentence, followed by a line of the input script as a remedy; nothing is changed.  Rank 0 warns
-/// if the pair style acts between atoms of a body.  Collective.
+/// fix group that no body uses, found in the neighbor lists of the pair styles.  Each item is one
+/// sentence, followed by a line for the input script as a remedy; the function changes nothing.
+/// Rank 0 warns if the pair style acts between atoms of a body.  Collective.
 std::vector<std::string> advice_on_surroundings(LAMMPS *lmp, const Fix *fix, const Arguments &args,
                                                 const Fleet &fleet, const Bodies &bodies,
                                                 Ownership &ownership);

@@ -6,8 +6,8 @@
 /* Binary restart files.  The global block describes the histories in sections, and the data of
    atoms contain them.  Files of 0.3.0 and of all later releases can be read.
 
-   LAMMPS passes both to the fix that has just been made from the atoms: read(), note_place() for
-   each atom, and finally resume(). */
+   LAMMPS passes the block and the data to the fix that has just been created from the atoms:
+   read(), note_place() for each atom, and finally resume(). */
 
 #ifndef LMP_GEAR_QUAT_RESTART_H
 #define LMP_GEAR_QUAT_RESTART_H
@@ -35,8 +35,8 @@ class Restart : protected Pointers {
   /// n: the number of other fixes whose data of atoms precede.
   void note_place(int n) { place = n; }
 
-  /// Continues with the bodies of the file; false if the command has other ones, and then there are
-  /// none.  group: the file gives the bodies of atoms outside of the group, 0 for none.
+  /// Continues with the bodies of the file; false, without bodies, if the command defines other
+  /// bodies.  group: the file gives the bodies of atoms outside of the group, 0 for none.
   /// Collective.
   bool resume(int group);
 

@@ -4,7 +4,7 @@
 ------------------------------------------------------------------------- */
 
 /* Checks of the simulation before a run: unsupported settings, and other fixes and styles that read
-   or move data of bodies.  None of these are done during a step. */
+   or change data of bodies.  No check is made during a step. */
 
 #ifndef LMP_GEAR_QUAT_SCENE_H
 #define LMP_GEAR_QUAT_SCENE_H

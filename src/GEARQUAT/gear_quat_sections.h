@@ -6,7 +6,7 @@
 /* Named sections of numbers, which a restart file contains besides the data of atoms.  Each object
    writes and reads the sections of its own state.  A reader ignores unknown sections and queries
    the number of elements in a section, so releases read each other's files.  A number keeps its
-   position and meaning in a section; new ones are added at the end.
+   position and meaning in a section; new numbers are added at the end.
 
    Packed, as 64-bit numbers: MAGIC, FORMAT, the total count of numbers; and for each section its
    name in NAME bytes, its count of numbers, and the numbers.

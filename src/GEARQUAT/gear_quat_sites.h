@@ -5,10 +5,10 @@
 
 /* The atoms of bodies: sites, listed body by body, so that a sum over the sites of a body needs no
    data of other bodies.  Positions and velocities of atoms follow from the states of their bodies,
-   loads of bodies from the forces on their atoms.
+   and loads of bodies follow from the forces on their atoms.
 
    The periodic images of sites are integers, and their displacements are computed from the present
-   box: no data depend on earlier boxes.
+   box: so no data depend on earlier boxes.
 
    The fix calls list() after Ownership::update(); and every step:
      [predict states] -> Ownership::spread_moved() -> place() -> [forces] -> gather_loads()

@@ -70,7 +70,7 @@ class Start : protected Pointers {
 
   Collocation collocation;
   int evaluations = 0;    ///< of the forces, so far
-  std::string reason;     ///< why the last spacing failed, or a remark about it
+  std::string reason;     ///< why the last spacing failed, or a remark about this spacing
 
   struct Search;
   std::string names() const;

@@ -14,8 +14,8 @@
    polynomial; integrating it twice from the exact start gives the state at a node, and the forces
    there give new second derivatives (Picard iteration).  Pairs of nodes are added outwards: each is
    extrapolated by the polynomial through the nodes inside it.  Rows 0 and 1 stay exact: no
-   difference of positions enters a velocity.  Nodes on both sides of the start, treated equally,
-   make it symmetric under time reversal.
+   difference of positions enters a velocity.  The start is symmetric under time reversal, because
+   the nodes on both sides are treated equally.
 
    The host of find_start() calls, for every body: begin(); foretell() to add a pair; state_at(),
    [forces], set_load() for both nodes of a pair, then settle(); finally series() and seed().
@@ -278,8 +278,8 @@ class Collocation {
   /// Number of nodes on each side of the start.  The forces at the start itself are already known.
   int pairs() const { return half; }
 
-  /// Starts without pairs: constant second derivatives, taken from `series` (at least three terms,
-  /// in units of the node spacing).
+  /// Begins without pairs: with constant second derivatives, taken from `series` (at least three
+  /// terms, in units of the node spacing).
   void begin(const TaylorSeries &series, Workspace &w) const
   {
     w.pairs = 0;

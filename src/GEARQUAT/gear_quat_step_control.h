@@ -144,7 +144,7 @@ class VariableOrder {
 
   /// The effect of the error of a chain in this step on a body of this mass in thermal motion: an
   /// error d of the friction causes the error h d v of a velocity v.  A cold body is insensitive to
-  /// the friction, so its own errors do not show whether the chain is accurate.  left_out: by the
+  /// the friction, so its errors do not show whether the chain is accurate.  left_out: by the
   /// polynomial through 2K.
   StepMeasures errors_of_chain(const Chain::LeftOut &left_out, double kt, double mass,
                                double h) const
@@ -314,7 +314,7 @@ class StepControl {
   struct Next {
     double step;    ///< with the sign of the present one
     int values;
-    bool held;    ///< limited from below; it would be shorter
+    bool held;    ///< limited from below: the error requires a shorter step
   };
 
   /// Errors of a body that count, after subtraction of rounding: no step is short enough to remove

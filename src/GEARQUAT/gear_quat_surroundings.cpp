@@ -174,7 +174,8 @@ std::vector<std::string> Surroundings::advice() const
   return text;
 }
 
-/// The energy of overlapping atoms of a body may be so large that the rest is lost in rounding.
+/// The energy of overlapping atoms of a body may be so large that all other energies are lost in
+/// rounding.
 void Surroundings::warn_of_own_pairs() const
 {
   if (!exerts_forces(force->pair, force->pair_style) || meets_itself()) return;
@@ -201,7 +202,8 @@ void Surroundings::warn_of_own_pairs() const
                  exclude_own());
 }
 
-/// True if a body may be large enough to interact with its own periodic image, which moves it.
+/// True if a body may be large enough to interact with its periodic image, so that these forces
+/// move it.
 bool Surroundings::meets_itself() const
 {
   double extent = 0.0;

@@ -4,17 +4,17 @@
 ------------------------------------------------------------------------- */
 
 /* Keyword temp: Nose-Hoover chains (gear_quat_chain.h) that control the temperature of all bodies.
-   They need the kinetic energies of all bodies on all ranks: a reduction in every pass of the
-   corrector, of exact sums, so that a run does not depend on the distribution of bodies.  A
-   component of a momentum that is turned off by keywords force and torque is not thermostatted, and
-   neither is a constant total momentum (gear_quat_momentum.h).
+   The chains need the kinetic energies of all bodies on all ranks.  Every pass of the corrector
+   therefore reduces exact sums over all ranks, so that a run does not depend on the distribution of
+   bodies.  A component of a momentum that is turned off by keywords force and torque is not
+   thermostatted, and neither is a constant total momentum (gear_quat_momentum.h).
 
    As in LAMMPS' thermostats, the target of a step changes linearly with the number of the step from
    the beginning to the end of the run.  A run without steps changes nothing.
 
    Insertion or removal of bodies changes the degrees of freedom and the kinetic energy at the end
    of a step, and so does the onset of external forces.  The chains then receive the new
-   derivatives.  In a step with insertions or removals they are predicted and not corrected.
+   derivatives.  In a step with insertions or removals the chains are predicted and not corrected.
 
    Before the first step of a run begin_run() has only the forces of fixes that are defined before
    this one; meet_forces() has all forces. */

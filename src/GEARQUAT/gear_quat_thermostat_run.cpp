@@ -201,7 +201,7 @@ void Thermostat::refuse_nothing(bool meets_all) const
     error->all(FLERR,
                "Fix gear/quat temp: keywords force and torque turn off all degrees of freedom of "
                "the bodies, so they have no temperature");
-  // the part that may still become heat
+  // the part of the kinetic energy that may still become heat
   const double common = meets_all ? 0.0 : total.twice_energy();
   if (meets_all && freedoms[TRANSLATION] + freedoms[ROTATION] == 0.0) return;
   const char *missing =

@@ -3,9 +3,9 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The length of the step, of histories and of LAMMPS.  Only this class changes either of them.
+/* The length of the step in histories and in LAMMPS. Only this class changes these lengths.
 
-   Histories have the length of the last step, or of the present one.  After the command timestep
+   Histories have the length of the last or of the current step.  After the command timestep
    LAMMPS' length may differ; then the histories follow: their owner rescales them by follow().
    With keyword tolerance, change() and change_begun() set the length of LAMMPS and of all fixes. */
 

@@ -156,7 +156,7 @@ class Tolerance : protected Pointers {
   StepControl::Next failed;    ///< the next try
   Steady steady;
   bool fresh = false;          ///< bodies were inserted in this step, set by the test of the error
-  bool warned_held = false;    ///< of a step limited from below
+  bool warned_held = false;    ///< warned of a step limited from below
   bigint announced = -1;       ///< the last step of announce_output()
   Record record = {};
   struct Settled {

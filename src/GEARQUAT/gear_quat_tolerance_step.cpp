@@ -38,7 +38,7 @@ static constexpr double PART_OF_SKIN = 0.25;
 
 static constexpr double PART_UNSEEN = 0.5;
 
-// a step that has failed this many times is not repeated any more
+// a step that has failed this many times is no longer repeated
 
 static constexpr int MOST_TRIES = 40;
 

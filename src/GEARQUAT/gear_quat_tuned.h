@@ -6,10 +6,10 @@
 /* Tuned coefficients of the corrector.
 
    Gear's coefficients put every spurious root of the corrector at zero.  The order does not require
-   this: of the N coefficients it determines one (first-order equation, c_0) or two (second-order,
-   c_0 and c_1), and one is 1 by definition.  The others, the tail, are free.  The table below has
-   tails optimized for rigid bodies, as decimals; the coefficients that the order determines are
-   computed from them.
+   this: of the N coefficients the order determines one (first-order equation, c_0) or two
+   (second-order, c_0 and c_1), and one is 1 by definition.  The other coefficients, the tail, are
+   free.  The table below has tails optimized for rigid bodies, as decimals; the coefficients that
+   the order determines are computed from them.
 
    Five values have a second set, for quaternions of any length (gear_quat_any_norm.h), where steps
    are long and the energy drift is important.  With c = (0, 17/24, 1, 7/12, 7/24) the method is

@@ -22,8 +22,8 @@ void Vibrations::begin_run()
   choose_end();
 }
 
-/// The end of the first window after the present step.  A window in the last steps is left out,
-/// because the last window would overlap with it.
+/// The end of the first window after the present step.  A window near the end of the run is left
+/// out, because the last window would overlap with it.
 void Vibrations::choose_end()
 {
   bigint length = FIRST_WINDOW;

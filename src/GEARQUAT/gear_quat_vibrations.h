@@ -6,9 +6,9 @@
 /* Vibrations that become faster during a run, as in a gas that condenses.
 
    The start measures the fast edge (gear_quat_choice.h) from derivatives.  During a run it follows
-   from the accelerations in a window of four steps, without evaluations of the forces.  A window
-   ends with the last step of a run, and with its step 100, 200, 400 and so on.  Other steps cost one
-   comparison.
+   from the accelerations in a window of four steps, without evaluations of the forces.  Windows end
+   with the steps 100, 200, 400 and so on of a run, and with its last step.  All other steps cost
+   one comparison.
 
    Motion calls note_step() after every step, and sums() if that returns true. */
 
