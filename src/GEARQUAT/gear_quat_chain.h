@@ -95,7 +95,7 @@ class Chain {
   double friction() const { return now[0]; }
   const Variables &values() const { return now; }
 
-  /// E, Eq.  T3: the energy that the chain has taken from the bodies.
+  /// E, Eq. T3: the energy that the chain has taken from the bodies.
   double energy(const ChainTarget &target) const { return moving(target, now) + now[length]; }
 
   /// The solution of Eqs. T2 and T4 with the initial values at the beginning of the step.

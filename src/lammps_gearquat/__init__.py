@@ -1,10 +1,10 @@
-"""GEARQUAT for LAMMPS. Imports nothing heavy: every rank imports this module whenever `lmp` starts."""
+"""GEARQUAT for LAMMPS. The module imports no large packages, because every rank imports it whenever `lmp` starts."""
 
 import os
 
 
 def plugin_folder() -> str:
-    """The folder with gearquatplugin.so; in an editable install, `__file__` lies elsewhere."""
+    """The folder with gearquatplugin.so; in an editable install, `__file__` is in another folder."""
     for folder in __path__:
         if os.path.exists(os.path.join(folder, "gearquatplugin.so")):
             return str(folder)
@@ -12,7 +12,7 @@ def plugin_folder() -> str:
 
 
 def __getattr__(name):
-    """`__version__`, looked up only when asked for."""
+    """`__version__` is determined only when it is requested."""
     if name == "__version__":
         from importlib.metadata import version
 

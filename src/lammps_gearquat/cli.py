@@ -21,7 +21,7 @@ from .commands.scatter import scatter
 
 
 def _apart(command, module):
-    """``command``, executed by ``python -m module`` in a process of its own once its words are understood.
+    """The command, executed by ``python -m module`` in a separate process after its arguments have been parsed.
 
     The analysis imports MDAnalysis, which is under the LGPL 3 or later.  Code under the GPL 2 alone, such as this
     package, must not be combined with it.

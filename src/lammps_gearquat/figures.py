@@ -1,4 +1,4 @@
-"""The pictures of ``gearquat cost``, ``horizon`` and ``scatter``.  Nothing is computed here."""
+"""The pictures of ``gearquat cost``, ``horizon`` and ``scatter``. This module computes nothing."""
 
 import matplotlib
 import numpy as np
@@ -13,12 +13,12 @@ from .trials import NORMS
 OWN = "#666666"
 FAINT = "#888888"
 FORMULATION = {"second": "Blues", "first": "Oranges"}
-#: with more decades than this on an axis, powers of ten are ticks enough
+#: with more decades than this on an axis, powers of ten are sufficient as ticks
 FEW_DECADES = 2.5
 
 
 def _ticks(axis):
-    """Ticks of a logarithmic Axis, labeled so that there are a few and none collide."""
+    """Sets ticks of a logarithmic Axis, with a few labels that do not collide."""
     low, high = axis.get_view_interval()
     if np.log10(high / low) < FEW_DECADES:
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -28,7 +28,7 @@ def _ticks(axis):
 
 # --- cost -----------------------------------------------------------------------------------------
 def _rank(keywords):
-    """Sorts methods by formulation and number of values, the deck's own before all."""
+    """Sorts methods by formulation and number of values; the fix of the deck comes first."""
     numbers = [int(word) for word in (keywords or "").split() if word.isdigit()]
     return (keywords is not None, "formulation first" in (keywords or ""), numbers)
 
@@ -94,7 +94,7 @@ def _draw_prices(axis, name, costs):
 
 
 def draw_drifts(path, deck, answer):
-    """Drift of the energy against the step, by method, with the bound; an answer of the module sampling."""
+    """Energy drift against the step, by method, with the bound, from an answer of the module sampling."""
     title = f"Drift of the energy: {deck.path.name}"
     rows = [run for run in answer.rows if run.drift.known]
     names = list(dict.fromkeys(run.keywords for run in rows))

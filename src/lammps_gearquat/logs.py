@@ -9,7 +9,7 @@ import numpy as np
 
 _LOOP = re.compile(r"^Loop time of (\S+) on (\d+) procs", re.MULTILINE)
 _SECTION = re.compile(r"^(\w+) +\|([^|]*)\|([^|]*)\|([^|]*)\|", re.MULTILINE)
-#: LAMMPS' reader leaves out lines with words; infinity in digits is read
+#: LAMMPS' reader leaves out lines with words, so infinity is replaced by a number
 _NOT_FINITE = re.compile(r"(?<=\s)-?(?:nan|inf)(?=\s)")
 _START = re.compile(r"^Fix gear/quat \S+: start of order \d+ from (\d+) force", re.MULTILINE)
 _VALUES = re.compile(r"^Fix gear/quat \S+: (\d+) values", re.MULTILINE)

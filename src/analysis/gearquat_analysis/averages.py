@@ -26,7 +26,8 @@ LONG_BLOCKS, GROUPS = 5, 10
 FEWEST = 20
 #: the total momentum counts as zero if its energy is below this fraction of the energy of a degree of freedom
 AT_REST = 1e-3
-#: in a run of dimension 2, angular velocities about x and y up to this fraction of those about z are round-off
+#: in a run of dimension 2, angular velocities about x and y up to this fraction of the angular velocities about z are
+#: round-off
 IN_PLANE = 1e-6
 #: value of the correlation at which its sum ends, lower values if the tail is not exponential there, and the multiple of
 #: this value at which the fit of the tail begins
@@ -58,7 +59,7 @@ class Average(NamedTuple):
         return bool(np.isfinite([self.value, self.error]).all())
 
     def text(self):
-        """Value and error, the error with two digits: 0.312 ± 0.015 Å²/ps, (2.74 ± 0.19)e-4 Å²/fs."""
+        """Value and error as text, with two digits of the error: 0.312 ± 0.015 Å²/ps, (2.74 ± 0.19)e-4 Å²/fs."""
         if not self.known or not self.error > 0.0:
             return f"{self.value:.4g} ± {self.error:.2g} {self.unit}".rstrip()
         last = math.floor(math.log10(self.error)) - 1
@@ -181,7 +182,7 @@ def of_box(poses):
 
 
 def _long_blocks(frames):
-    """Slices of the blocks in which functions of time are computed; empty if the blocks would be too short."""
+    """Slices of the blocks in which functions of time are computed; no slices if the blocks would be too short."""
     length = frames // LONG_BLOCKS
     first = frames - length * LONG_BLOCKS
     return [slice(first + i * length, first + (i + 1) * length) for i in range(LONG_BLOCKS)] if length >= FEWEST else []
@@ -278,7 +279,8 @@ def _without_groups(q, axis, order):
 
 
 def _with_error(find, lag, whole, blocks, without, *more):
-    """Result of ``find`` for a function (F,), and its error: the larger one from blocks and from leaving out groups of bodies."""
+    """Result of ``find`` for a function (F,), and its error: the larger of the errors from blocks and from leaving out
+    groups of bodies."""
     errors = [float(scatter([find(lag[: len(one)], one, *more) for one in blocks]))]
     if without:
         values = np.array([find(lag, one, *more) for one in without])  # the jackknife
@@ -327,7 +329,7 @@ def averages(poses):
 
 
 def _of_motion(poses, of, dimensions):
-    """Diffusion coefficient and correlation times of the bodies of one kind; ``of`` names it."""
+    """Diffusion coefficient and correlation times of the bodies of one kind; ``of`` is the name of the kind."""
     results, name = poses.results, "diffusion coefficient"
     value, error, why = diffusion(results.time, mapped.own_motion(results), dimensions)
     found = [Average(f"{name}{of}", value, error, poses.unit(name), why)]

@@ -1,4 +1,4 @@
-"""A backend of MDAnalysis with a progress bar; MDAnalysis' own backends have none."""
+"""A backend of MDAnalysis with a progress bar, which the backends in MDAnalysis lack."""
 
 import functools
 from multiprocessing import Pool
@@ -8,7 +8,7 @@ from MDAnalysis.analysis.backends import BackendBase
 
 
 def _outcome(function, part):
-    """The results of a part that ``AnalysisBase.run`` uses, without the universe, which is not sent back."""
+    """The results of one part of a trajectory, as ``AnalysisBase.run`` uses them; the universe is not sent back."""
     done = function(part)
     return SimpleNamespace(frames=done.frames, times=done.times, results=done.results)
 

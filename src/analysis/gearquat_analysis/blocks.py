@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import chi2
 
-#: fewest blocks, ratio of their numbers from level to level, and least length in statistical inefficiencies
+#: fewest blocks, ratio of the numbers of blocks from level to level, and least length of a block in statistical
+#: inefficiencies
 FEWEST_BLOCKS, FINER, INEFFICIENCIES = 8, 1.3, 5.0
-#: quantile of its distribution up to which an error from longer blocks counts as equal to the chosen one
+#: quantile of the distribution of an error up to which an error from longer blocks counts as equal to the chosen error
 PLATEAU = 0.9999
 
 
@@ -77,7 +78,7 @@ def of_series(series, weights=None):
 
 
 def _numbers_of_blocks(samples):
-    """Numbers of blocks to try, the largest first."""
+    """The numbers of blocks to try, in descending order."""
     numbers = []
     number = samples
     while number > FEWEST_BLOCKS:

@@ -28,7 +28,7 @@ def lags(time):
     if not len(gaps):
         return time - time[0]
     usual = np.median(gaps)
-    # formats such as xtc have times in single precision
+    # formats such as xtc store times in single precision
     uneven = np.abs(gaps - usual) > 1e-6 * abs(usual) + 2.0 * np.spacing(np.float32(np.abs(time).max()))
     if usual <= 0.0 or uneven.any():
         k = int(np.argmax(uneven))
@@ -176,7 +176,7 @@ class Correlations:
     kinds: tuple = ("",)
 
     def of_kind(self, kind):
-        """Functions of one kind of bodies, by their names without it."""
+        """Functions of one kind of bodies, by their names without the name of the kind."""
         ending = f"_{kind}" if kind else ""
         return {name.removesuffix(ending): one for name, one in self.functions.items() if name.endswith(ending)}
 

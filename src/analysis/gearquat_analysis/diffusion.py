@@ -30,7 +30,8 @@ FEWEST_BODIES = 5
 SAME = 3.0
 #: d ln(mean square) / d ln(lag) in a range that is linear, and the largest relative error of a coefficient
 EXPONENTS, PRECISION = (0.85, 1.18), 0.2
-#: relative error of a slope above which its range counts as linear: the distribution of such errors is not normal
+#: a range whose slope has a larger relative error than this counts as linear, because such errors are not normally
+#: distributed
 VAGUE = 0.5
 #: bodies are confined if their mean square at late lags is below this fraction of the mean square of Brownian motion
 CONFINED = 0.4
@@ -65,12 +66,12 @@ class Fit(NamedTuple):
 def diffusion(time, center, dimensions=3):
     """Estimate of the diffusion coefficient of centers (F, B, 3) of one kind of bodies, length squared / time.
 
-    It is a sixth (in two ``dimensions``, a fourth) of the slope of the mean-square displacement.  The slope is taken from
-    the earliest range of lags such that this range and all later ones are linear.  The error is the largest of three: the
-    scatter of blocks of the run, the scatter of bodies, and the error for Brownian motion.  Half of the largest difference
-    from ranges that begin up to twice as late is added in quadrature.  NaN if no range with a first lag below a hundredth
-    of the run is linear, if the error is above a fifth of the coefficient, or if bodies are confined.  ``time`` (F,) is
-    evenly spaced.
+    It is a sixth (in two ``dimensions``, a fourth) of the slope of the mean-square displacement.  The slope is taken
+    from the earliest range of lags such that this range and all later ones are linear.  The error is the largest of
+    three: the scatter of blocks of the run, the scatter of bodies, and the error for Brownian motion.  Half of the
+    largest difference from ranges that begin up to twice as late is added in quadrature.  The coefficient is NaN if no
+    range with a first lag below a hundredth of the run is linear, if the error is above a fifth of the coefficient, or
+    if bodies are confined.  ``time`` (F,) is evenly spaced.
 
     >>> import numpy as np
     >>> from gearquat_analysis.diffusion import diffusion

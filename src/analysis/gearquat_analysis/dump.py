@@ -24,7 +24,7 @@ from MDAnalysis.topology.LAMMPSParser import DATAParser
 
 from .bodies import places
 
-#: columns of positions, the preferred ones first
+#: columns of positions, in descending order of preference
 POSITIONS = {
     "unwrapped": ("xu", "yu", "zu"),
     "scaled unwrapped": ("xsu", "ysu", "zsu"),
@@ -350,7 +350,8 @@ def _from_data_file(data, atom_style, ids, whole):
     """
     style = {"atom_style": atom_style} if atom_style else {}
     try:
-        # the topology only: velocities are not needed, and MDAnalysis reads on until a section that it recognizes
+        # only the topology is read: velocities are not needed, and MDAnalysis would read on to the next section that it
+        # recognizes
         with DATAParser(str(data)) as parser, warnings.catch_warnings():
             warnings.simplefilter("ignore")
             known = MDAnalysis.Universe(parser.parse(**style), to_guess=()).atoms
@@ -377,7 +378,8 @@ def _from_data_file(data, atom_style, ids, whole):
 
 
 def _check_same(what, found, dumped, ids):
-    """Raises DumpError if numbers (n,) of a data file differ from the dump's, which may have only six digits, or be None."""
+    """Raises DumpError if numbers (n,) of a data file differ from the numbers of the dump, which may have only six
+    digits, or be None."""
     other = np.zeros(0, int) if dumped is None else np.flatnonzero(~np.isclose(found, dumped, rtol=1e-5, atol=0.0))
     if len(other):
         k = other[0]

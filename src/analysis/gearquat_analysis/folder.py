@@ -64,7 +64,7 @@ class Folder:
 
 
 def _beginning(path, length):
-    """Length and digest of the first ``length`` bytes of a file, or of all if there are fewer."""
+    """Length and digest of the first ``length`` bytes of a file, or of the whole file if it is shorter."""
     with open(path, "rb") as file:
         data = file.read(length)
     return [len(data), hashlib.sha256(data).hexdigest()]

@@ -8,7 +8,7 @@ import numpy as np
 
 from .mapped import Part
 
-#: largest number of kinds; with more, bodies are taken as all different, not as a mixture of species
+#: largest number of kinds in a mixture; if there are more, all bodies count as different
 MOST = 8
 #: relative differences of masses and of principal moments within a kind; with six digits, moments are uncertain by about
 #: 1e-3

@@ -30,7 +30,7 @@ def rows(array, begin=0):
 
 
 class Part:
-    """Some columns of an array (F, B, ...), which are read on demand by ``columns``.
+    """Some columns of an array (F, B, ...), which ``columns`` reads on demand.
 
     ``own`` (b,): numbers of the columns.  Rows are selected by a slice: ``part[10:20]``.
     """

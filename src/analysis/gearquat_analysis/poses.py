@@ -1,6 +1,6 @@
 """Pose, velocity, energy and momentum of every body in every frame, as MDAnalysis analyses.
 
-``Poses`` computes them from sites, ``TablePoses`` reads them from the ``dump local`` of the fix's own table.
+``Poses`` computes these data from sites, ``TablePoses`` reads them from the ``dump local`` of the fix's table.
 
     universe = open_dump("water.dump", timestep=1.0)
     poses = Poses(universe.atoms, units="real").run(verbose=True)
@@ -62,7 +62,7 @@ class _FrameTable(AnalysisBase):
 
     @classmethod
     def get_supported_backends(cls):
-        """Serial, and MDAnalysis' own backends with processes."""
+        """The serial backend, and the backends of MDAnalysis that use processes."""
         return ("serial", "multiprocessing", "dask")
 
     def __init__(self, atoms, ids, fields, units, out, **kwargs):
@@ -278,10 +278,9 @@ class Poses(_FrameTable):
     * ``reference``: the body frame.  "first": the pose in the first frame; "principal": the shape of the first frame in its
       principal axes, so that q agrees with the fix (except for bodies with equal moments, whose axes are arbitrary); or
       positions (n_atoms, 3) of all atoms, in their order.
-    * ``units``: LAMMPS' style of units, if the dump does not have it; energies are in its units, without it in
-      mass x velocity^2.
-    * ``potential``: column with potential energies of atoms, given to ``open_dump`` as well.
-    * ``out``: file (.npy) for the table; without it the table is in memory.
+    * ``units``: LAMMPS' style of units, if the dump does not have it; energies are in units of this style, or without a
+    * style in mass x velocity^2.  ``potential``: column with potential energies of atoms, given to ``open_dump`` as
+    * well.  ``out``: file (.npy) for the table; without it the table is in memory.
 
     Results after ``run``, for F frames and B bodies, in units of the run; ``results.table`` has all as one array:
 
@@ -427,7 +426,7 @@ class Poses(_FrameTable):
 
 
 class TablePoses(_FrameTable):
-    """Poses and motion from the fix's own table, a Universe of ``open_table``: exact, with one row per body.
+    """Poses and motion from the fix's table, a Universe of ``open_table``: exact, with one row per body.
 
     Results are ``step``, ``time``, ``ids``, ``center``, ``q``, ``velocity``, ``omega_space``,
     ``angular_momentum_space`` and ``ke_rotation`` as in ``Poses``.  Masses are not in the table.

@@ -48,7 +48,7 @@ def write_averages(path, averages):
 
 
 def average_lines(averages):
-    """Text for a terminal: a line for each known Average, and a line for each reason for missing ones."""
+    """Text for a terminal: a line for each known Average, and a line for each reason why averages are missing."""
     lines, missing = [f"The {one.name} is {one.text()}." for one in averages if one.known], {}
     for one in averages:
         if not one.known:
@@ -64,7 +64,7 @@ def counted(number, noun, many=None):
 
 
 def summary(poses, totals):
-    """A few lines for a terminal."""
+    """A summary of the analysis in a few lines for a terminal."""
     time, (frames, number) = poses.results.time, poses.results.table.shape
     many = f"{counted(frames, 'frame')} of {counted(number, 'body', 'bodies')}"
     lines = [f"{many} {'was' if frames == 1 else 'were'} read, from time {time[0]:g} to {time[-1]:g}."]

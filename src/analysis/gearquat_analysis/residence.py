@@ -62,7 +62,8 @@ class Stays:
         """
         lags(self.time)
         frames = len(self.time)
-        # a stay of n frames lasts a lag from n - lag origins: cumulative sums over longer stays, twice
+        # a stay of n frames covers a lag from n - lag origins, so the counts are double cumulative sums over longer
+        # stays
         longer = np.cumsum(np.bincount(self.frames, minlength=frames + 1)[::-1])[::-1]
         lasting = np.cumsum(longer[1:][::-1])[::-1].astype(float)
         change = np.bincount(self.begin, minlength=frames + 1) - np.bincount(self.end, minlength=frames + 1)

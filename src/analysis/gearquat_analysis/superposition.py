@@ -2,9 +2,9 @@
 
 The mass-weighted least-squares rotation follows from a singular value decomposition (W. Kabsch, Acta Cryst. A 34, 827
 (1978)), refined by one step of Newton's method.  The refinement is needed for thin bodies: two of their singular values
-are small, so the decomposition alone loses as many digits as the ratio of length to width has.
+are small, so the decomposition alone loses as many digits as there are in the ratio of length to width.
 
-Quaternions (B, 4): scalar first, as in the fix's own array; body -> space.
+Quaternions (B, 4): scalar first, as in the array of the fix; body -> space.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ def rotate(q, vectors):
 def shortest_turn(before, after):
     """Quaternions (B, 4) of the shortest rotations between unit vectors ``before`` and ``after`` (B, 3).
 
-    For opposite directions it is half a turn about an axis perpendicular to them.
+    For opposite directions the rotation is half a turn about an axis perpendicular to them.
     """
     scalar = 1.0 + np.einsum("ij,ij->i", before, after)
     vector = np.cross(before, after)

@@ -1,1 +1,1 @@
-"""The commands of ``gearquat``: options and messages; the work is done elsewhere."""
+"""The commands of ``gearquat``: options and messages; other modules do the work."""

@@ -12,7 +12,7 @@ from gearquat_analysis.options import COUNT, FILE, progress_bar
 
 #: seconds between two lines of progress where there is no terminal
 EVERY = 60.0
-#: such a line
+#: a line of progress
 LINE = "{desc}{percentage:.0f} % after {elapsed}"
 #: exit status after Ctrl-C, as in a shell
 INTERRUPTED = 130
@@ -49,7 +49,7 @@ def reading_options(*more):
 
 
 def deck_options(function):
-    """The argument DECK and the options about reading it; they become the argument ``scene``."""
+    """The argument DECK and the options about reading it, which become the argument ``scene``."""
 
     @cloup.argument("deck", type=FILE, help="LAMMPS input script with a fix that moves rigid bodies.")
     @reading_options(

@@ -12,11 +12,11 @@ from ..trials.script import DeckError
 from .common import reading_options
 
 FROM_ZERO = cloup.IntRange(min=0)
-#: options for new flights; merged parts have them already
+#: options for new flights; for merged parts they are already determined
 OF_FLIGHTS = ("deck", "temperature", "energy", "first", "count", "replay")
-#: options that determine the flights of a folder; --replay takes one of these flights
+#: options that determine the flights of a folder; --replay uses one of these flights
 OF_FOLDERS = ("temperature", "energy", "rotation", "largest", "sigma", "first", "count")
-#: the largest ratio of two temperatures that follow each other, of several
+#: the largest ratio of two neighboring temperatures, if there are several
 GAP = 3.0
 #: exit status after Ctrl-C, as of a shell
 INTERRUPTED = 130
@@ -152,7 +152,7 @@ def _flights(scene, asked, out, conduct):
 
 
 def _refuse(given, names, why):
-    """Options that have no meaning because of ``why``."""
+    """Rejects options that have no meaning because of ``why``."""
     for name in names:
         if given[name] not in (None, ()):
             raise DeckError(f"{why}: {name} has to be left out")

@@ -11,7 +11,7 @@ from .pool import Pool
 from .results import convergence, results
 from .sampling import REPLICAS, Plan
 
-#: flights before errors are looked at, which doubles as long as they are too large
+#: number of flights after which errors are checked; it doubles as long as they are too large
 FIRST_ROUND = 32 * REPLICAS
 #: allowed loss beyond the largest impact parameter, in units of the requested error
 LEFT_OUT = 0.1
@@ -47,7 +47,8 @@ def simulate(pool, asked, numbers, error, most, out, progress):
 def _settle(pool, asked, error, out, progress):
     """(Plan, Largest, settings), from pilot flights.
 
-    If the folder has flights of the same settings, with an impact parameter that is large enough, it stays.
+    If the folder has flights of the same settings with a largest impact parameter that is sufficient, this value is
+    kept.
     """
     boltzmann = UNITS[pool.facts.style].boltzmann
     plan = Plan((asked["seed"],), asked["temperature"], asked["energy"], asked["rotation"], 0.0)
@@ -72,7 +73,7 @@ def _settle(pool, asked, error, out, progress):
 
 
 def _reachable(farthest, error, given):
-    """Raise DeckError if the error that is asked for cannot be reached because --largest leaves out too much."""
+    """Raise DeckError if the requested error cannot be reached because --largest leaves out too much."""
     left = max((one["momentum"] or 0.0) for one in farthest.left)
     left = max(left, *((one["viscosity"] or 0.0) for one in farthest.left))
     if given and left >= error:
@@ -92,7 +93,7 @@ def rounds(most):
 
 
 def _until(pool, plan, farthest, numbers, error, most, out, progress):
-    """Rows of all flights of the folder, in their order, after those that were asked for."""
+    """Rows of all flights of the folder, in their order, after the requested flights have been simulated."""
     lines = store.read_lines(out)
     known = {store.number_of(line): row for line, row in zip(lines, store.parse(lines))}
     last, ordered = max(known, default=-1), list(known) == sorted(known)
@@ -118,7 +119,7 @@ def _until(pool, plan, farthest, numbers, error, most, out, progress):
 
 
 def _finished(found, error):
-    """Raise DeckError if unparted flights keep the errors above the requested ones."""
+    """Raise DeckError if the errors exceed the requested errors because of unparted flights."""
     if found.guessed > error:
         raise DeckError(
             f"{report.unfinished(found)}; they are {found.guessed:.1e} of the averages, more than --error {error:g}, and no"

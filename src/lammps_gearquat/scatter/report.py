@@ -9,7 +9,7 @@ from .results import NAMED
 
 
 def _with_units(unit, style):
-    """A unit with the names that lengths and times have in the style, if it is one of the deck."""
+    """A unit with the names of lengths and times in the style, if it is a unit of the deck."""
     units = UNITS[style]
     if style == "lj":
         return "" if unit in ("length^2", "length^3/time") else unit
@@ -99,7 +99,7 @@ def _distance(farthest, unit):
 
 
 def as_json(settings, found):
-    """All results, ready for JSON; not a number is None."""
+    """All results, ready for JSON; NaN becomes None."""
     style = settings["pair"]["style"]
     answers = [_answer_as_json(answer, style) for answer in found.answers]
     errors = {words: {"largest": values[0], "median": values[1]} for words, values in found.errors.items()}

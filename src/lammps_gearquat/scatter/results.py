@@ -10,9 +10,9 @@ from .integrals import Averages, estimates, integrands
 
 #: the quantities that --error refers to, by the kind of plan
 AIMS = {"temperature": ("Omega(1,1)", "Omega(2,2)"), "energy": ("Q(1)", "Q(2)")}
-#: flights that are named at most
+#: the most flights that a message names
 NAMED = 10
-#: numbers of flights at which convergence is shown begin with this one
+#: the smallest number of flights at which convergence is shown
 FIRST_SHOWN = 128
 #: energy that a flight may lose or gain, as a part of the initial one
 WORST = 0.05
@@ -94,7 +94,7 @@ def _answer(columns, plan, facts, temperature, sigma, left):
 
 
 def counts(columns):
-    """Numbers of all flights, of flights with a repeated step, of orbiting and of unparted ones."""
+    """Numbers of all flights, of flights with a repeated step, of orbiting flights and of unparted flights."""
     fate = columns["fate"]
     return {
         "flights": len(fate),
@@ -120,7 +120,8 @@ def unfinished(columns):
 
 
 def convergence(columns, plan, facts, temperature):
-    """Numbers of flights (k,), and name of an aim -> (values (k,), statistical errors (k,)) from the first so many."""
+    """Numbers of flights (k,), and name of an aim -> (values (k,), statistical errors (k,)) from this number of
+    flights."""
     number = len(columns["flight"])
     shown = [n for n in FIRST_SHOWN * 2 ** np.arange(40) if n < number] + [number]
     found = integrands(columns, plan, facts, temperature)

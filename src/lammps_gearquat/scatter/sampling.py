@@ -3,7 +3,7 @@
 Flight i is point i // REPLICAS of the scrambled Sobol sequence number i % REPLICAS (A. B. Owen, J. Complexity
 14, 466 (1998)).  The sequences are independent, so that their means have standard errors, and each of them
 fills the space of all starts evenly.  In the frame of the center of mass the relative velocity points along
-z and the impact parameter along x; that the bodies have all orientations makes it general.
+z and the impact parameter along x; this is no restriction, because the bodies have all orientations.
 """
 
 import warnings
@@ -19,7 +19,7 @@ from .pair import Start
 
 #: independent sequences
 REPLICAS = 16
-#: points of a sequence are multiples of 2^-BITS; flights have those between
+#: points of a sequence are multiples of 2^-BITS; flights use the midpoints between them
 BITS = 30
 
 
@@ -137,7 +137,8 @@ def _momenta(pair, quaternion, thermal, columns):
             width = np.sqrt(bodies.moments[k, axis] * thermal / pair.units.energy)
             along[:, axis] = width * ndtri(next(columns))
         turn = Rotation.from_quat(quaternion[:, k], scalar_first=True).as_matrix() @ bodies.axes[k].T
-        # products of matrices sum in another order for another n: the last digits of a flight must not depend on others
+        # matrix products would add in an order that depends on n, but the last digits of a flight must not depend on
+        # other flights
         found[:, k] = sum(turn[:, :, axis] * along[:, axis, None] for axis in range(3))
     return found
 
@@ -154,7 +155,7 @@ def uniform(seed, numbers, dimension):
         if first:
             sequence.fast_forward(first)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # that a part of a sequence is not as even as the whole
+            warnings.simplefilter("ignore")  # a part of a sequence is not as even as the whole
             points[own] = sequence.random(last - first + 1)[wanted - first]
     return points + 0.5 ** (BITS + 1)
 

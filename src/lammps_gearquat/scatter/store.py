@@ -16,9 +16,9 @@ from .pilots import Largest
 from .pool import Facts
 from .sampling import Plan
 
-#: version of the way in which flights are drawn; settings of releases before 0.4 have none
+#: version of the way in which flights are drawn; settings of releases before 0.4 contain no version
 SAMPLING = 2
-#: gaps between flights that are named at most
+#: the most gaps between flights that a message names
 NAMED = 10
 SETTINGS, FLIGHTS, RESULTS = "settings.json", "flights.csv", "results.json"
 
@@ -85,7 +85,7 @@ WORDS = {
     "plan largest": "the largest impact parameter",
     "most_steps": "--steps",
 }
-#: results of pilot flights, which differ if anything else does
+#: results of pilot flights, which differ if any other setting differs
 FOUND = ("plan s0", "plan s1", "plan power")
 
 
@@ -99,7 +99,7 @@ def _differing(known, wanted):
     ]
     if names and set(names) <= set(FOUND):
         return "the density of impact parameters and energies that pilot flights found"
-    # other facts of the bodies differ because the decks do
+    # other facts of the bodies differ because the decks differ
     told = [WORDS[name] for name in names if name in WORDS] or names
     return ", ".join(told)
 
@@ -201,7 +201,8 @@ def merge(folders, out):
 
 
 def _notes(numbers, again):
-    """Sentences about flights ``again`` in another part, and about those missing among sorted ``numbers``."""
+    """Sentences about flights that occur ``again`` in another part, and about flights missing among the sorted
+    ``numbers``."""
     notes = [f"Flights that are in several parts are counted once: {again}"] if again else []
     gaps = [(a + 1, b - 1) for a, b in zip([-1, *numbers], numbers) if b > a + 1]
     if gaps:

@@ -3,10 +3,10 @@
 import numpy as np
 from scipy.interpolate import BPoly
 
-#: steps between two looks
+#: steps between two samples
 STEPS = 15
-#: places between two looks, and there the polynomials of fifth order whose value, derivative and second derivative are
-#: (1, 0, 0), ... at the first and then at the second look
+#: places between two samples, and the values there of the fifth-order polynomials whose value, derivative and second
+#: derivative are (1, 0, 0), ... at the first and then at the second sample
 _BETWEEN = np.linspace(0.0, 1.0, 129)
 _BASIS = BPoly.from_derivatives([0.0, 1.0], np.eye(6).reshape(2, 3, 6))(_BETWEEN)
 

@@ -9,7 +9,7 @@ CLOSING = 10.0
 class Budget:
     """Seconds of wall time, shown by ``progress`` (an object like a tqdm bar, or None).
 
-    They begin at ``begin`` on the monotonic clock, None: now.
+    The time begins at ``begin`` on the monotonic clock; None means now.
     """
 
     def __init__(self, seconds, progress=None, begin=None):
@@ -17,7 +17,7 @@ class Budget:
         self.begin = clock.monotonic() if begin is None else begin
 
     def spent(self):
-        """Seconds since the beginning; moves the bar."""
+        """Seconds since the beginning; updates the bar."""
         now = clock.monotonic() - self.begin
         if self.progress is not None:
             self.progress.update(max(0.0, min(now, self.seconds) - self.progress.n))

@@ -1,8 +1,9 @@
 """The state of the atoms after a run, so that trials need not repeat the run.
 
-``save`` and ``restore`` are called by every rank, in a process that runs LAMMPS.  They keep the time step, the box,
-and the arrays of ATOM_DATA to the last bit: most runs change nothing else.  Other state, such as the variables of a
-thermostat, is not kept; ``Deck`` compares the first steps after a restored state with the deck's own steps.
+``save`` and ``restore`` are called by every rank, in a process that runs LAMMPS.  These functions keep the time step,
+the box, and the arrays of ATOM_DATA to the last bit; most runs change nothing else.  Other state, such as the variables
+of a thermostat, is not kept; ``Deck`` compares the first steps after a restored state with the steps of the unchanged
+deck.
 """
 
 import ctypes
@@ -20,7 +21,7 @@ ATOM_DATA = ("x", "v", "image", "omega", "angmom", "mu", "q", "radius", "rmass")
 
 
 def save(lammps, prefix):
-    """Write the atoms of this rank to a file of its own, whose name begins with ``prefix``."""
+    """Write the atoms of this rank to a separate file, whose name begins with ``prefix``."""
     extract = lammps.numpy.extract_atom
     data = {name: extract(name) for name in ("id", *ATOM_DATA)}
     local = lammps.extract_global("nlocal")
@@ -46,7 +47,7 @@ def restore(lammps, prefix):
     _restore_box(lammps, parts[0]["box"])
     _restore_atoms(lammps, state)
     if lammps.extract_setting("world_size") > 1:
-        # atoms that went far change their ranks here, which the set-up of a run does not expect
+        # atoms that have moved far change their ranks here, because the set-up of a run does not expect this
         lammps.command("displace_atoms all move 0 0 0")
     lammps.command("run 0 post no")
     _restore_atoms(lammps, state)

@@ -1,10 +1,10 @@
 """The cost of an error in the simulation of a deck: short trials over steps and orders.
 
 1. A reference: fix gear/quat of high order at finer and finer steps, until two of them agree far
-   better than required, and a second one of the other formulation that confirms it.  Smaller errors than the
-   difference of these two cannot be judged; the time of the trials is cut until the smallest error can be judged, but
-   not below a tenth.
-2. Every method from coarse to fine steps, to the same time.
+   better than required, and a trial with the other formulation that confirms the reference.  Smaller errors than the
+   difference of these two cannot be judged; the time of the trials is shortened until the smallest error can be judged,
+   but not below a tenth.
+2. Trials of every method from coarse to fine steps, to the same time.
 3. The relevant methods at interpolated steps, so that every recommended step has been tried.
 4. The same trials several times, interleaved, for their wall time: the smallest counts.
 5. The recommended trial for as long as the budget allows, for its energy drift.  If the drift is above
@@ -36,16 +36,16 @@ CONFIRMATION = "formulation first values 6 compensate yes"
 DECADES = (1e-2, 1e-4, 1e-6, 1e-8)
 
 SAMPLES = 20  # of a reference in time
-#: full-length runs at the deck's own step that fit into the budget: the time is chosen so
+#: number of runs at the step of the deck that fit into the budget; this determines the time of the trials
 RUNS_IN_BUDGET = 100
 SHARE_REFERENCE, SHARE_TIMING = 0.3, 0.15
 FEWEST_STEPS, PROBE_STEPS = 8, 20
-PATIENCE = 30.0  # seconds that any trial may take beyond what was expected
-#: the part of the budget that may pass before the trials
+PATIENCE = 30.0  # seconds by which any trial may exceed the expected time
+#: the part of the budget that may be spent before the trials
 SHARE_BEFORE = 0.8
 #: trials at interpolated steps, for each error and method
 ATTEMPTS = 3
-#: another fix pays if the deck's own takes longer by this factor
+#: another fix pays off if the fix of the deck takes longer by this factor
 WORTHWHILE = 1.05
 
 
@@ -62,7 +62,7 @@ class Row:
 
     @property
     def keep(self):
-        """True if the deck's own fix is as fast as any."""
+        """True if no fix is faster than the fix of the deck."""
         if self.own is None or self.own.kind == "extrapolated":
             return False
         return self.best is None or self.own.seconds < WORTHWHILE * self.best.seconds
@@ -74,7 +74,7 @@ class Row:
 
     @property
     def recommended(self):
-        """(keywords, step) for a script where there is a choice; keywords None: the deck's own fix."""
+        """(keywords, step) for a script if there is a choice; keywords None: the fix of the deck."""
         return None if self.keep else self.choice.method, evaluate.usable_step(self.choice.dt)
 
 
@@ -179,7 +179,7 @@ class Inquiry:
 
     # --- 0. how long ----------------------------------------------------------------------------------
     def probe(self):
-        """Measure the cost of a step with the deck's own fix, from a run of a few tenths of a second."""
+        """Measure the cost of a step with the fix of the deck, from a run of a few tenths of a second."""
         steps = PROBE_STEPS
         while True:
             trial = self.attempt(None, steps * self.deck.dt, steps)
@@ -192,7 +192,7 @@ class Inquiry:
             steps = min(4 * steps, self.deck.start.steps)
 
     def check(self, tries):
-        """Raise DeckError for keywords that the fix refuses: so short a step fails for no other reason."""
+        """Raise DeckError for keywords that the fix refuses; such a short step fails for no other reason."""
         for keywords in tries:
             if self.attempt(keywords, 1e-3 * self.deck.dt, 1) is None:
                 raise self.refusal(f"--try '{keywords}'", keywords)
@@ -202,7 +202,7 @@ class Inquiry:
         """(time, reason or ""): the deck's run, or as much of it as the budget allows."""
         whole = self.deck.start.steps
         seconds = self.budget.left() / RUNS_IN_BUDGET
-        # a trial is to be more than its overhead
+        # a trial should take longer than its overhead
         steps = int(max(seconds - self.overhead, 0.5 * seconds) / self.pace[None])
         if steps >= whole:
             return self.deck.end, ""
@@ -213,8 +213,9 @@ class Inquiry:
     def find_reference(self, end, target, largest=math.inf):
         """(accurate trial, trial with CONFIRMATION), as fine as the budget allows.
 
-        The first is the halving of the step that changes the result least.  The second is None where trajectories of
-        many bodies diverge, so that not even an error of ``largest`` can be judged at the end of the deck's run.
+        The accurate trial belongs to the halving of the step that changes the result least.  The second trial is None
+        if trajectories of many bodies diverge, so that not even an error of ``largest`` can be judged at the end of the
+        deck's run.
         """
         many = largest < math.inf
         accurate = self.deck.accurate
@@ -231,11 +232,11 @@ class Inquiry:
                 if many and chaotic(trial.time, between, self.deck.end, largest):
                     return trial, None
                 gaps.append(between[-1])
-                # far better than required, or nothing gained by two further halvings
+                # far better than required, or no gain from two further halvings
                 stalled = len(gaps) > 2 and gaps[-1] > 0.5 * gaps[-3]
                 if gaps[-1] < 0.03 * target or stalled:
                     break
-            # the confirmation takes somewhat more than the last trial
+            # the confirmation takes somewhat longer than the last trial
             affordable = self.affords(accurate, steps, reserve, runs=4)
             if failed > 6 or not (finer or self.affords(accurate, steps, runs=4)):
                 raise self.refusal("fix gear/quat cannot run this deck", accurate)
@@ -275,7 +276,7 @@ class Inquiry:
         return costs.trials[-1][1][self.norm] + costs.doubt
 
     def ladder(self, costs, keywords, errors, first, reserve):
-        """Trials of one method over steps: from where it is too coarse to where it is good enough.
+        """Trials of one method over steps, from a step that is too long to a step that is short enough.
 
         ``first``, the number of steps to begin with; ``reserve``, seconds of the budget to leave.
         Returns a dictionary number of steps -> error.
@@ -290,7 +291,7 @@ class Inquiry:
 
         exponent, error = 0, climb(0)
         while error is not None and error < 3 * max(errors):
-            # far below the errors, in larger strides
+            # far below the requested errors, with larger changes of the step
             exponent -= 2 if error < min(errors) / 30 else 1
             steps = round(first * ratio**exponent)
             if steps < FEWEST_STEPS or not self.affords(keywords, steps, reserve):
@@ -303,7 +304,7 @@ class Inquiry:
                 break
             error = climb(exponent)
             last += [] if error is None else [error]
-            if len(last) > 3 and last[-1] > 0.8 * last[-4]:  # rounding, or no order at all
+            if len(last) > 3 and last[-1] > 0.8 * last[-4]:  # the error is due to rounding, or the method has no order
                 break
         return {steps: error for steps, error in rungs.items() if error is not None}
 
@@ -332,7 +333,7 @@ class Inquiry:
         reserve, methods = (SHARE_TIMING / 2 + drift.SHARE) * self.budget.seconds, list(costs.points())
         for error in ATTEMPTS * list(errors):
             for keywords, price in evaluate.candidates(costs.points(), error).items():
-                # no finer than the step recommended if this trial meets the error
+                # not shorter than the step that is recommended if this trial meets the error
                 steps = int(costs.end / evaluate.usable_step(price.aim))
                 loose = price.kind == "at most" and price.aim > evaluate.CLOSE * price.dt
                 if loose and steps and self.affords(keywords, steps, reserve):
@@ -356,7 +357,8 @@ class Inquiry:
     def choose(self, costs, errors):
         """Rows of ``costs`` whose recommended steps were tested for energy drift and not rejected.
 
-        Short runs come first, and each refusal makes another choice.  Then what is left of the budget is shared by long runs.
+        Short runs come first, and each rejected step leads to another choice.  Then long runs share the rest of the
+        budget.
         """
         long = set()
         for part in (drift.FIRST_TRY, 1.0):
@@ -413,7 +415,7 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
             f" try --budget {inquiry.enough()}"
         )
     inquiry.refine(costs, wanted)
-    for _ in range(ATTEMPTS):  # other methods may matter when times are known better
+    for _ in range(ATTEMPTS):  # other methods may matter when times are better known
         inquiry.repeat(worth_timing(costs, wanted))
     inquiry.choose(costs, errors)
     costs.notes += known_until(reference.time, doubt, [e for e in errors if e not in judged])
@@ -448,7 +450,7 @@ def worth_timing(costs, errors):
 def rows_of(costs, errors):
     """One Row for each error: its cost with the deck's own method, and at best.
 
-    A smaller error that was measured as cheaper serves a larger one as well: times are noisy.
+    If a smaller error was measured as cheaper, its cost is also used for a larger error, because times are noisy.
     """
     points, rows = costs.points(), []
     for error in sorted(errors):

@@ -6,9 +6,9 @@ import numpy as np
 
 from gearquat_analysis.tables import rounded
 
-MARGIN = 3.0  # an error is judged if it is this much larger than the doubt about the reference
+MARGIN = 3.0  # an error is judged if it exceeds the uncertainty of the reference by this factor
 SHORTEST = 0.1  # of the time to be measured
-#: with so many bodies a run is made for averages if their trajectories diverge
+#: with at least this many bodies, a run whose trajectories diverge is assumed to serve averages
 MANY = 8
 
 
@@ -28,9 +28,9 @@ def known_until(time, doubt, errors):
 
 
 def cut_to(time, doubt, errors):
-    """(index of the sample at which to end, why if it is not the last).
+    """(index of the sample at which to end, the reason if it is not the last).
 
-    The latest sample at which the smallest error can be judged; if that is too early, the next.
+    It is the latest sample at which the smallest error can be judged; if that is too early, the next error is used.
     """
     last = len(time) - 1
     for error in sorted(errors):
@@ -52,9 +52,9 @@ def cut_to(time, doubt, errors):
 def diverging(time, doubt, end, error):
     """True if the trajectory cannot be followed to ``end``.
 
-    That is so if two trials of high accuracy that differ by ``doubt`` (S,) at the times (S,) will differ by
-    too much for the largest ``error`` of interest then, at the latest.  Later than the last time the difference grows by
-    the power that it has had over the second half.
+    This is the case if two trials of high accuracy, which differ by ``doubt`` (S,) at the times (S,), will differ too
+    much at ``end`` even for the largest ``error`` of interest.  Beyond the last time the difference is extrapolated by
+    the power law of its second half.
     """
     largest = np.maximum.accumulate(doubt)
     half = len(time) // 2

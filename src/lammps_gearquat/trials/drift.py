@@ -13,17 +13,19 @@ from .worker import NOT_FINISHED
 
 #: allowed difference of the temperatures of translation and rotation, relative to the temperature
 BALANCE = 0.01
-#: the part of the budget that is kept for these runs beside trials of an error
+#: the part of the budget that is reserved for these runs in addition to trials of an error
 SHARE = 0.15
-#: times at which a run is sampled, if it has so many steps, and means of these for the slope of the energy
+#: number of times at which a run is sampled, if it has that many steps, and number of their means for the slope of the
+#: energy
 SAMPLES, MEANS = 400, 100
 #: longest run, in ns
 LONGEST = 0.1
-#: a run that does not tell is made again longer by this factor, if that takes no more than this part of the time there is
+#: a run that does not decide is repeated longer by this factor, if this takes no more than this part of the remaining
+#: time
 MORE, SHARE_MORE = 4.0, 0.7
-#: standard errors that a drift has to be away from the bound to be judged
+#: number of standard errors between a drift and the bound that is required for a judgment
 SURE = 2.0
-#: the part of the time left that the first, shorter try of a step takes
+#: the part of the remaining time for the first, shorter try of a step
 FIRST_TRY = 0.1
 
 
@@ -94,7 +96,7 @@ def of_trial(trial, nanosecond, freedoms=None, boltzmann=1.0, bound=BOUND):
     thermal = 2.0 * kinetic.mean()  # kT times the number of degrees of freedom
     if not thermal > 0.0:
         return Drift(time=float(trial.time[-1]), reason="there is no kinetic energy", bound=bound)
-    # means over equal times have all that white noise and a random walk say of the slope
+    # means over equal times contain all information on the slope, for white noise and a random walk
     many = len(energy) // min(len(energy), MEANS)
     time, energy = (values[: len(values) // many * many].reshape(-1, many).mean(axis=1) for values in (trial.time, energy))
     rate, error = (nanosecond * number / thermal for number in evaluate.trend(time, energy))
@@ -107,7 +109,8 @@ def of_trial(trial, nanosecond, freedoms=None, boltzmann=1.0, bound=BOUND):
 
 
 def run(inquiry, keywords, dt, steps, timeout, bound=BOUND, balance=False):
-    """Drift in a run of about so many ``steps``; NaN, with a reason, where it was not finished or ended with an error.
+    """Drift in a run of about this number of ``steps``; NaN, with a reason, if the run was not finished or ended with
+    an error.
 
     ``balance``: whether the temperatures of translation and rotation are compared, as in a liquid in equilibrium.
     """
@@ -135,10 +138,10 @@ def run(inquiry, keywords, dt, steps, timeout, bound=BOUND, balance=False):
 
 
 def of_step(inquiry, keywords, dt, end, seconds, bound=BOUND):
-    """Drift at a step, from a run of at most so many seconds, up to ``longest``, or longer if the drift is not
+    """Drift at a step, from a run of at most this number of seconds, up to ``longest``, or longer if the drift is not
     resolved.
 
-    Where that ends with an error a run to ``end``, for which the step is recommended, is made as well.
+    If this run ends with an error, a run to ``end``, for which the step is recommended, is made as well.
     """
     affordable = (seconds - inquiry.overhead) / (1.2 * inquiry.pace[keywords])
     whole, judged = (int(min(time / dt, affordable)) for time in (longest(inquiry.deck, end), end))

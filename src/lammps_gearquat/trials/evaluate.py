@@ -47,9 +47,9 @@ class Point:
 class Price(Point):
     """The cost of an error with one method, and how it was found.
 
-    ``kind``: "measured" in a trial, "at most" (of a trial whose next coarser one is far away or missing), or
-    "extrapolated" (no trial was as good as required).  ``aim`` is the step, not shorter than ``dt``,
-    that interpolation between trials promises.
+    ``kind``: "measured" in a trial, "at most" (of a trial whose next coarser trial is far away or missing), or
+    "extrapolated" (no trial was as good as required).  ``aim`` is the step, not shorter than ``dt``, that interpolation
+    between trials predicts.
     """
 
     kind: str = "measured"
@@ -58,7 +58,7 @@ class Price(Point):
 
 #: steeper than this, a stability limit rather than the order determines the error
 CLIFF = 16.0
-#: a step is close to another one that is larger by less than this factor
+#: a step is close to another step that is larger by less than this factor
 CLOSE = 1.1
 
 
@@ -105,7 +105,8 @@ def _extrapolated(finer, coarser, error):
 def candidates(points, error):
     """Keywords -> Price of ``error`` with the methods that matter, as far as they reach it.
 
-    The deck's own (None), and the two fastest by seconds and by evaluations at the interpolated steps.
+    These are the method of the deck (None), and the two fastest by seconds and by evaluations at the interpolated
+    steps.
     """
     prices = {key: price(own, error, key is None) for key, own in points.items()}
     prices = {key: found for key, found in prices.items() if found}
@@ -194,14 +195,14 @@ class Growth:
 
     @property
     def factor(self):
-        """By how much the exponential alone grew."""
+        """The factor by which the exponential alone grew."""
         return math.exp(self.rate * (self.end - self.begin))
 
     def at(self, time):
         return self.level * time**self.power * np.exp(self.rate * time)
 
 
-#: an exponential has to grow by this factor, over at least so many samples, to be called one
+#: growth counts as exponential only above this factor, over at least this number of samples
 GROWTH, SAMPLES = 100.0, 20
 #: growth is steady only if no tenth of the time contributes more than this fraction of its logarithm
 STEADY = 0.4

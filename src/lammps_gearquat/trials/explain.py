@@ -22,7 +22,7 @@ def explained(message, deck, dt, reached=None):
     fixed = _fixed_boundary(deck)
     if fixed:
         free = " ".join(word.replace("f", "m") for word in fixed.split())
-        # an atom that is outside is noticed some time later
+        # LAMMPS notices an atom outside of the box only some time later
         end = f"before it with --time {rounded(0.9 * reached, 2)}" if reached else "earlier with --time"
         return (
             f"{when}molecules left the box, whose boundary is fixed: write '{free}' instead of '{fixed}', so that the"
@@ -44,7 +44,7 @@ def left_the_box(message, deck):
 
 
 def _fixed_boundary(deck):
-    """The deck's command that makes a boundary fixed, or ""."""
+    """The command of the deck that makes a boundary fixed, or ""."""
     commands = [command.text.split() for command in deck.start.commands]
     last = next((words for words in reversed(commands) if words[:1] == ["boundary"]), [])
     return " ".join(last) if any("f" in word for word in last[1:]) else ""

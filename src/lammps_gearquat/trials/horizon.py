@@ -15,9 +15,9 @@ from .script import DeckError
 #: default thresholds, in powers of ten of the size of the bodies
 THRESHOLDS = (0.1, 1.0, 3.0)
 SAMPLES = 500
-#: a difference of this part of the size of the bodies no longer grows freely
+#: a difference above this part of the size of the bodies no longer grows freely
 SATURATION = 0.1
-BUDGET = 120.0  # seconds that set the default time
+BUDGET = 120.0  # seconds of wall time that determine the default time
 
 
 @dataclass
@@ -47,10 +47,10 @@ class Horizon:
 def measure(deck, a=None, b=None, steps=(None, None), time=None, every=None, thresholds=(), progress=None):
     """Horizon of a Deck.
 
-    ``a`` and ``b`` are changes to the keywords of the deck's line in terms of fix gear/quat; None:
-    the deck as it is, and accurate keywords.  ``steps`` are their time steps; None: the deck's
-    own, and half of that where nothing else differs.  ``every`` is the time between samples.
-    Raises DeckError if the steps of the deck as it is follow the error.
+    ``a`` and ``b`` are changes to the keywords of the deck's line in terms of fix gear/quat; None: the unchanged deck,
+    and accurate keywords.  ``steps`` are their time steps; None: the step of the deck, and half of it if nothing else
+    differs.  ``every`` is the time between samples.  Raises DeckError if the unchanged deck adapts its steps to the
+    error.
     """
     if a is None and deck.own != deck.lines:
         raise DeckError(
@@ -91,7 +91,7 @@ class _Pair:
         self.words = list(zip(("first", "second"), keywords, steps, strides))
 
     def run(self, segments):
-        """Trials over so many segments.  Raises LammpsError with the cause, and the time that both reach."""
+        """Trials over this number of segments.  Raises LammpsError with the cause, and the time that both reach."""
         trials, reached, errors = [], [segments], []
         for words in self.words:
             try:

@@ -1,9 +1,9 @@
 """The flow of commands of an input script, followed up to the run that moves its rigid bodies.
 
-Only commands that decide which command comes next are executed here: include, jump, label, next, if, run.
-Everything else, variables among it, is LAMMPS' own: every command is passed on to ``lammps`` with its
-variables substituted.  Commands that only write or print are left out, except for restart and data files that the
-deck reads again.  The commands passed on are kept, so that they can be replayed without any control flow.
+Only commands that decide which command comes next are executed here: include, jump, label, next, if, run.  LAMMPS
+handles everything else, including variables: every other command is passed on to ``lammps`` with its variables
+substituted.  Commands that only write or print are left out, except for restart and data files that the deck reads
+again.  The commands passed on are kept, so that they can be replayed without any control flow.
 """
 
 import re
@@ -20,13 +20,13 @@ SILENT = set("""dump dump_modify undump restart write_dump write_coeff
     pair_write processors balance label""".split())
 SILENT_FIXES = ("ave/", "print", "vector", "halt", "balance")
 SILENT_COMPUTES = ("ke/rigid", "erotate/rigid", "rigid/local")
-#: commands that move atoms and are no run
+#: commands other than runs that move atoms
 OTHER_MOTION = set("""rerun temper temper/grem temper/npt neb neb/spin tad prd hyper mdi
     dynamical_matrix third_order partition""".split())
-#: commands that do not look at the positions of atoms
+#: commands that do not depend on the positions of atoms
 BLIND = set("""next variable timestep thermo_style thermo_modify neighbor neigh_modify comm_modify
     suffix package shell label jump unfix uncompute""".split())
-#: commands that change or end a fix or compute, and how its ID begins among those that were left out
+#: commands that change or end a fix or compute, and the prefix of its ID in the set of omitted IDs
 CHANGES = {"fix_modify": "f_", "unfix": "f_", "compute_modify": "c_", "uncompute": "c_"}
 #: keywords of thermo_modify that decide whether a run goes on
 RUNS_ON = ("temp", "press", "lost", "lost/bond")
@@ -76,7 +76,7 @@ class LeadIn:
         return [command.mover for command in self.commands if command.mover]
 
 
-#: how the text of a deck speaks of a variable
+#: references to a variable in the text of a deck
 _NAMES = re.compile(r"\bvariable\s+(\w+)|\$\{(\w+)\}|\$(\w)|\bv_(\w+)")
 #: without any of these words a deck cannot define a fix that moves rigid bodies
 _HOPE = re.compile(r"rigid|gear/quat|\binclude\b|\bjump\s+(?!SELF)")
@@ -85,11 +85,11 @@ _LATER = re.compile(r"^\s*(run|include|jump)\b")
 
 
 class _Reached(Exception):
-    """The run has been reached."""
+    """Raised when the run has been reached."""
 
 
 class _Quit(Exception):
-    """The deck has ended itself."""
+    """Raised when the deck has ended itself."""
 
 
 class Interpreter:
@@ -119,7 +119,7 @@ class Interpreter:
         self.moved = None  # the last Command that moved atoms, unless its state has been saved
 
     def follow(self, path):
-        """LeadIn of the deck ``path``, relative to the present folder.  Raises DeckError."""
+        """LeadIn of the deck ``path``, relative to the current folder.  Raises DeckError."""
         quits = ""
         try:
             self._file(path)
@@ -166,7 +166,7 @@ class Interpreter:
             text = Path(path).read_text(encoding="utf-8", errors="replace")
         except OSError as error:
             raise DeckError(f"cannot read {path}: {error.strerror}") from error
-        path = str(Path(path).absolute())  # the deck may go to another folder
+        path = str(Path(path).absolute())  # the deck may change the folder
         lines = script.logical_lines(text)
         for line in lines:
             command = script.strip_comment(line)
@@ -181,7 +181,7 @@ class Interpreter:
             if words[:1] == ["label"] and words[1:2] == [self.label]:
                 self.label = None
             return
-        if (line.split() or [""])[0] in SILENT:  # whatever it would print
+        if (line.split() or [""])[0] in SILENT:  # commands that only print
             return
         line = self._lammps("expand", line) if line.strip() else None
         words = script.split(line or "")  # None if nothing is left

@@ -17,11 +17,11 @@ from . import process, script
 from .worker import Worker
 
 DECK_ITSELF = "the deck's own"
-#: keywords of fix gear/quat for a trajectory to compare with; the second ones where it has to be isokinetic
+#: keywords of fix gear/quat for a reference trajectory; the second text is for isokinetic decks
 ACCURATE = tuple(
     f"formulation {name} values {n} compensate yes" for name, n in (("second", 9), ("first", 8))
 )
-#: a checkpoint is good if steps from it differ from the deck's own by this part of the motion
+#: a checkpoint is good if steps from it differ from the steps of the deck by at most this part of the motion
 CHECKPOINT_ERROR = 1e-6
 
 
@@ -167,7 +167,7 @@ class Deck:
         self.own = [line for line, _ in own]
         self.base = [line for line, _ in translated]
         used = {command.mover.id for command in self.start.commands if command.mover and command.in_use}
-        #: lines that trials of the deck's own method define anew: what earlier runs made of chains is not kept
+        #: lines that trials of the method of the deck define again, because the state of chains is not kept
         self._anew = {b.id: b for b in self.own if b not in self.lines or (b.has_chains and b.id in used)}
         notes = [note for _, notes in own + translated for note in notes]
         if self.start.checkpoints:
@@ -182,7 +182,7 @@ class Deck:
         self.size = self.scene.size
         self.units = self._situation.units
         self.time_unit, self.length_unit, *_ = UNITS[self.units]
-        #: True if atoms move that are in no body
+        #: True if atoms outside of bodies move
         self.others = sum(len(part.sites.ids) for part in parts) > len(self.scene.ids)
         self._continued = [part.continued for part in parts]
 
@@ -236,7 +236,7 @@ class Deck:
 
     @property
     def accurate(self):
-        """The keywords of ACCURATE that the deck allows."""
+        """The keywords of ACCURATE that are compatible with the deck."""
         return next(filter(self.takes, ACCURATE))
 
     def fix_lines_of(self, keywords):

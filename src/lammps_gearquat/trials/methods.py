@@ -1,10 +1,11 @@
-"""The methods that are tried beside the deck's own fix, and their names."""
+"""The methods that are tried in addition to the fix of the deck, and their names."""
 
 from .. import keywords
 
-#: no keyword about integration: whatever the fix chooses by itself
+#: no keyword about integration: the fix chooses by itself
 DEFAULT = ""
-#: formulation -> numbers of values; fewer follow forces that change quickly, more are better where all is smooth
+#: formulation -> numbers of values; fewer values follow forces that change quickly, more values are better for smooth
+#: forces
 VALUES = {"second": (9, 7, 5, 11), "first": (8, 6, 4)}
 
 
@@ -18,7 +19,7 @@ def methods():
 
 
 def stated(method):
-    """A method in a table: the keywords, or words where there are none."""
+    """A method in a table: the keywords, or a description if there are none."""
     return "the deck's own" if method is None else method or "no keyword"
 
 

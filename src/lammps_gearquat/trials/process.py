@@ -1,8 +1,8 @@
 """The process that runs LAMMPS as a library: it follows a deck once, then replays it as trials.
 
-``python -m lammps_gearquat.trials.process ADDRESS`` connects to the socket of a ``Worker`` and
-answers its requests until the worker is gone.  With several ranks each of them does so: all get
-the same requests, and each answers for its own atoms.
+``python -m lammps_gearquat.trials.process ADDRESS`` connects to the socket of a ``Worker`` and answers its requests
+until the worker is gone.  If there are several ranks, every rank receives the same requests, and answers for the atoms
+that it owns.
 """
 
 import os
@@ -33,7 +33,7 @@ ENERGIES = ("gearquat_conserved", "gearquat_kinetic", "gearquat_translation", "g
 #: properties of atoms that rotate by themselves
 ROTATING = ("omega_flag", "angmom_flag")
 COMPUTE_SITES = f"compute {SITES} all property/atom id xu yu zu"
-#: steps that are run beyond the point where a deck has been followed to, to test the checkpoint
+#: number of steps beyond the end of the followed deck, for a test of the checkpoint
 TEST_STEPS = 10
 
 
@@ -79,7 +79,7 @@ def _sites(lammps):
 
 # --- the requests ---------------------------------------------------------------------------------
 def follow(deck, variables, without, which, log, tell):
-    """Situation of a deck.  ``tell`` is called with a line of text before slow commands."""
+    """The Situation of a deck. ``tell`` is called with a line of text before slow commands."""
     lammps = open_lammps(deck, variables, log)
     folder = Path(log).parent
     try:
@@ -148,7 +148,7 @@ def watch_energies(lammps, lines, partial, ids, unit):
     commands = [*groups, *dict.fromkeys([*commands, *more])]
     commands += [f"variable {name} equal {formula}" for name, formula in zip(ENERGIES, formulas)]
     names = " ".join(f"v_{name}" for name in ENERGIES)
-    # LAMMPS computes what the formulas name only if it is printed itself
+    # LAMMPS computes the quantities in the formulas only if they are printed themselves
     lammps.commands_list([*commands, f"thermo_style custom step econserve {names}", "thermo_modify norm no"])
 
 
@@ -160,8 +160,8 @@ def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments
     """TrialPart of a trial: ``segments`` are numbers of steps; sites are read after each segment.
 
     With ``energies``, arguments of watch_energies, these are read instead, which takes an evaluation of the energy in
-    that step, and sites at the end only.  Quantities that ramp over the deck's run ramp over ``ramp_steps`` here,
-    however short the trial is. ``tell`` is called with the number of steps of each segment that is done.
+    that step, and sites at the end only.  Quantities that ramp over the run of the deck ramp over ``ramp_steps`` in a
+    trial of any length.  ``tell`` is called with the number of steps of each segment that is done.
     """
     lammps = open_lammps(deck, variables, log)
     try:
@@ -176,7 +176,7 @@ def trial(deck, variables, log, start, lines, need_map, ramp_steps, dt, segments
         ramp = f"start {now} stop {now + max(ramp_steps, sum(segments))}"
         samples, watched, seconds = [], [], 0.0
         for number, steps in enumerate(segments):
-            # without a new set-up between segments they are one run, to the last bit
+            # without a new set-up between them, the segments are the same as one run, to the last bit
             pre = " pre no" if number else ""
             post = "" if number == len(segments) - 1 else " post no"
             begin = time.perf_counter()
@@ -219,7 +219,7 @@ def serve(address):
     os.environ["OMP_NUM_THREADS"] = "1"
     connection = Client(address, "AF_UNIX")
     threading.Thread(target=_end_with_caller, args=(connection.fileno(),), daemon=True).start()
-    sys.path += connection.recv()  # a function may be of any module that the other side can import
+    sys.path += connection.recv()  # a function may be from any module that the other side can import
     while True:
         try:
             function, arguments = connection.recv()

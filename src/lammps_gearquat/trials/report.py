@@ -121,7 +121,7 @@ def _how_to_measure(deck, doubtful):
         rows, energy = [*rows, f"variable conserved equal {energy}"], "v_conserved"
     if kinetic != "ke":
         rows, kinetic = [*rows, f"variable kinetic equal {kinetic}"], "v_kinetic"
-    columns = " ".join(dict.fromkeys(["econserve", energy, kinetic]))  # without the first LAMMPS lacks the others
+    columns = " ".join(dict.fromkeys(["econserve", energy, kinetic]))  # the others require the first column
     rows += [f"thermo_style custom step time {columns}", "thermo_modify norm no format float %.15g", "thermo 100"]
     time = deck.time_unit or "time unit"
     long_enough = _quantity(drift.LONGEST * drift.nanosecond(deck), deck.time_unit)
@@ -195,7 +195,8 @@ def _refused(costs):
 
 
 def _nothing_holds(deck, costs, rows):
-    """Note that the steps which reach the errors of these rows drift, with a lower bound of the drift."""
+    """A note that the energy drifts at the steps that reach the errors of these rows, with a lower bound of the
+    drift."""
     refused = _refused(costs)
     if not rows or not refused:
         return []

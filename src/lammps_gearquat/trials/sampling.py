@@ -1,13 +1,13 @@
 """The longest acceptable steps for long runs with diverging trajectories, as in a liquid.
 
-There the error of a trajectory means little.  Two criteria count: the energy does not drift, and translation and
-rotation have the same temperature.
+In such runs the error of a trajectory is not meaningful.  Two criteria count: the energy does not drift, and
+translation and rotation have the same temperature.
 
-1. Short runs of the fix without keywords (it chooses the number of values itself), of the user's own keywords,
-   and of the deck's own fix: from the longest known step upwards, until one drifts.
+1.  Short runs of the fix without keywords (it chooses the number of values itself), of the keywords of the user, and of
+the fix of the deck: from the longest known step upwards, until the energy drifts.
 2. Longer runs of the cheapest step that may meet the bound.  If it does not, the next shorter step is tried, unless
    another method is cheaper then.
-3. The deck as it is, for the same time, for comparison.
+3. The unchanged deck, for the same time, for comparison.
 """
 
 import math
@@ -18,14 +18,14 @@ from .methods import DEFAULT, named
 
 #: time steps that are tried, in powers of ten
 STEPS = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
-#: the part of the budget that short runs take, how many of them it is meant for, and how many places of STEPS they
-#: go on at once
+#: the part of the budget for short runs, the number of runs for which it is meant, and the number of places in STEPS
+#: between them at first
 SHARE_SHORT, SHORT_RUNS, STRIDE = 0.4, 10, 2
 #: steps of a short run at least
 FEWEST = 200
 #: the part of the longest time from which on temperatures are compared: they fluctuate slowly
 BALANCED = 0.1
-#: the shortest step that is tried, as a part of the deck's own
+#: the shortest step that is tried, as a part of the step of the deck
 SHORTEST = 1.0 / 16.0
 #: fractions of the remaining time for the run of a recommended step, and for a shorter first try before it
 SHARE_LONG, FIRST_TRY = 0.75, 0.15
@@ -33,14 +33,14 @@ SHARE_LONG, FIRST_TRY = 0.75, 0.15
 SHARE_LAST = (1.0 - SHARE_SHORT) * (1.0 - FIRST_TRY) ** 2 * SHARE_LONG
 #: a run may take longer than expected by this factor
 SLACK = 1.2
-#: a budget that was not enough is to be longer by this factor at least
+#: the least factor by which a longer budget exceeds a budget that was not enough
 LONGER = 1.5
-#: another method has to be faster by this factor than the deck's own fix and the default: times are noisy
+#: another method has to be faster by this factor than the fix of the deck and the default, because times are noisy
 WORTHWHILE = 1.1
 
 
 def neighbor(dt, shift):
-    """The step (STEPS times a power of ten) that is ``shift`` places from the longest one not above ``dt``."""
+    """The step (STEPS times a power of ten) that is ``shift`` places from the longest step not above ``dt``."""
     power = math.floor(math.log10(dt) + 1e-9)
     place = max(k for k, step in enumerate(STEPS) if step <= dt / 10.0**power * (1 + 1e-6)) + shift
     decade, place = divmod(place, len(STEPS))
@@ -68,8 +68,8 @@ class Sampling:
     """The answer for a scene whose trajectory diverges; times in units of the deck.
 
     ``runs``, list of LongRun; ``recommended``, (keywords, step) or None if no step is known to meet ``bound``.
-    ``enough``, the budget in seconds for the longest run, or for one that decides; NaN if this budget was enough, or
-    none is.
+    ``enough``, the budget in seconds for the longest run, or for a run that decides; NaN if this budget was enough, or
+    if no budget is enough.
     """
 
     bound: float
@@ -85,7 +85,7 @@ class Sampling:
 
     @property
     def rows(self):
-        """The longest LongRun of each method and step that is known best, by method and step."""
+        """The longest LongRun of each method and step, by method and step."""
         best = {}
         for run in self.runs:
             key, old = (run.keywords, run.dt), best.get((run.keywords, run.dt))
@@ -100,7 +100,7 @@ class Sampling:
 
     @property
     def own(self):
-        """The row of the deck as it is."""
+        """The row of the unchanged deck."""
         return self.row(None, self.own_dt)
 
     @property
@@ -110,7 +110,7 @@ class Sampling:
 
     @property
     def least(self):
-        """The row with the smallest drift, or None where none is known."""
+        """The row with the smallest drift, or None if no drift is known."""
         known = [run for run in self.rows if run.drift.known and not run.drift.fails]
         return min(known, key=lambda run: abs(run.drift.rate), default=None)
 
@@ -128,8 +128,9 @@ class Search:
         return min(known, default=max(self.inquiry.pace.values()))
 
     def run(self, keywords, dt, seconds):
-        """The Drift of a run of so many seconds at most, up to the longest time."""
-        # the latest pace, for the machine may do more by now; what does not end within the budget says nothing
+        """The Drift of a run of at most this number of seconds, up to the longest time."""
+        # uses the latest speed, because the load of the machine may have changed; a run that does not end within the
+        # budget decides nothing
         pace = SLACK * self.inquiry.pace.get(keywords, self.seconds_per_step(keywords))
         steps = min(self.end / dt, max((seconds - self.inquiry.overhead) / pace, FEWEST))
         timeout = max(min(3.0 * seconds + 30.0, self.inquiry.budget.left()), 0.0)
@@ -142,7 +143,7 @@ class Search:
 
     # --- 1. short runs --------------------------------------------------------------------------------
     def may_hold(self, keywords, dt):
-        """(whether nothing in a short run speaks against a step, whether the run said anything)."""
+        """(True if a short run does not rule out a step, True if the run gave any result)."""
         found = self.run(keywords, dt, self.short)
         return not found.refused, found.known or found.fails
 
@@ -191,14 +192,15 @@ class Search:
 
     # --- 2. long runs ---------------------------------------------------------------------------------
     def cheapest(self, steps):
-        """The method to try next: the deck's own fix, or else the default, unless another one is clearly cheaper."""
+        """The method to try next: the fix of the deck, otherwise the default, unless another method is clearly
+        cheaper."""
         prices = {keywords: self.seconds_per_step(keywords) / dt for keywords, dt in steps.items()}
         least = min(prices.values())
         first = [keywords for keywords in (None, DEFAULT) if prices.get(keywords, math.inf) <= WORTHWHILE * least]
         return (first or [min(prices, key=prices.get)])[0]
 
     def hopeless(self, found):
-        """True if a longer run could hardly show that this drift is within its bound."""
+        """True if even a longer run could hardly show that this drift is within its bound."""
         beyond = abs(found.rate) - found.bound
         return found.known and (beyond > found.error or found.error < 0.25 * found.bound and beyond > -found.error)
 
@@ -217,7 +219,7 @@ class Search:
                 if found.holds:
                     return keywords, dt
             steps[keywords] = shorter(dt)
-            # a run that says nothing says no more with a shorter step
+            # a run without a result would have no result with a shorter step either
             silent = not found.refused and not self.hopeless(found)
             if silent or steps[keywords] < self.shortest:
                 del steps[keywords]
@@ -225,7 +227,7 @@ class Search:
 
     # --- 3. the deck as it is ---------------------------------------------------------------------------
     def compare(self):
-        """A run of the deck as it is, as long as the run of the recommendation or as the budget allows."""
+        """A run of the unchanged deck, as long as the run of the recommendation or as the budget allows."""
         own, choice = self.answer.own, self.answer.choice
         wanted = choice.drift.time if choice else 0.0
         if own and own.drift.time < 0.9 * wanted and not own.drift.fails:
@@ -252,7 +254,7 @@ class Search:
         return max(self.answer.before + seconds / SHARE_LAST, LONGER * self.inquiry.budget.seconds)
 
 
-#: why there is no error of a trajectory in the answer
+#: the reason why the answer contains no error of a trajectory
 PARTED = (
     "trajectories diverge before the end of the run, so steps are judged by the energy and the temperatures of a long run;"
     " --error and --time ask for the error of a trajectory"
@@ -264,7 +266,7 @@ def measure(inquiry, tries, bound):
     answer = Sampling(bound, inquiry.deck.dt, inquiry.before, notes=[*inquiry.deck.notes, PARTED])
     search = Search(inquiry, answer)
     answer.recommended = search.long_runs(search.short_runs(tries))
-    if answer.recommended is None:  # shorter runs may have shown it
+    if answer.recommended is None:  # shorter runs may have shown the divergence
         best = min((run for run in answer.rows if run.drift.holds), key=lambda run: run.seconds, default=None)
         answer.recommended = (best.keywords, best.dt) if best else None
     answer.enough = search.enough()

@@ -1,6 +1,6 @@
 """The commands of an input script: lines, words, fix lines, runs, and refusals.
 
-Text in, text out; LAMMPS is asked for the list of the fix's keywords only.  Continuation, comments and quotes
+Text in, text out; from LAMMPS only the list of the fix's keywords is requested.  Continuation, comments and quotes
 follow LAMMPS' manual, "Parsing rules for input scripts".
 """
 
@@ -218,7 +218,7 @@ def conserved(lines, partial=False):
     ``partial``: the kinetic energy of atoms differs from the kinetic energy of the bodies, and only bodies move.
     """
     own = [line for line in lines if line.style == "gear/quat"]
-    heats = [f"f_{line.id}[9]" for line in own if line.isokinetic]  # which econserve does not have
+    heats = [f"f_{line.id}[9]" for line in own if line.isokinetic]  # which econserve does not include
     commands = [f"fix_modify {line.id} energy yes" for line in own if not line.has_chains]
     if not partial:
         return "+".join(["econserve", *heats]), "ke", commands
@@ -256,7 +256,7 @@ def _with_coefficients(numerics):
 
 
 def moves_bodies(style):
-    """True if a fix of this style moves rigid bodies, by whatever method."""
+    """True if a fix of this style moves rigid bodies, by any method."""
     return style == "gear/quat" or base_style(style).split("/")[0] == "rigid"
 
 
@@ -282,7 +282,7 @@ def parse_fix(words):
             raise DeckError(f"{who}: unknown keyword {key}{takes}")
         if len(rest) <= known[key]:
             raise DeckError(f"{who}: keyword {key} lacks its arguments")
-        if key not in MASKS:  # the last one counts
+        if key not in MASKS:  # the last keyword counts
             given = [pair for pair in given if pair[0] != key]
         end = known[key] + 1
         if rest[end : end + 1] and rest[end] in options.get(key, ()):
@@ -293,7 +293,7 @@ def parse_fix(words):
 
 
 def for_trials(line):
-    """The line of a deck as its trials run it: (FixLine, notes)."""
+    """The line of a deck in the form used by its trials: (FixLine, notes)."""
     if line.style != "gear/quat":
         return line, []
     kept = line.only("integration", *_PHYSICAL, "output")

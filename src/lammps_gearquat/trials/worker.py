@@ -1,7 +1,7 @@
 """The process that runs LAMMPS, as its caller sees it; it may be one process or several ranks.
 
-LAMMPS gets processes of its own because it may end the process it is in, and because its library needs the MPI
-library loaded first.  See ``process`` for what they do.
+LAMMPS runs in separate processes because it may end its process, and because its library needs the MPI library loaded
+first.  The module ``process`` contains the code that runs in them.
 """
 
 import os
@@ -18,11 +18,11 @@ from gearquat_analysis.tables import rounded
 from ..launch import LammpsError, find, started
 from .script import DeckError
 
-#: seconds that the processes may take to come up
+#: seconds that the processes may take to start
 PATIENCE = 60.0
-#: how the message begins where an answer comes too late
+#: beginning of the message if an answer comes too late
 NOT_FINISHED = "not finished"
-#: and where the processes have ended
+#: and if the processes have ended
 ENDED = "LAMMPS ended its process"
 
 
@@ -149,7 +149,7 @@ class Worker:
         except (EOFError, OSError) as error:
             self.end()
             raise LammpsError(f"{ENDED}: " + self._last_words()) from error
-        except BaseException:  # Ctrl-C, or not in time
+        except BaseException:  # after Ctrl-C, or after the time limit
             self.end()
             raise
         for answer in answers:
