@@ -1,4 +1,4 @@
-"""The laboratory: what measures the pages of doc/.  It is not installed; see benchmarks/run.
+"""The laboratory: the programs that measure the numbers on the pages of doc/.  It is not installed; see benchmarks/run.
 
-It imports the installed package ``lammps_gearquat``, which imports nothing from here.
+It imports the installed package ``lammps_gearquat``, which imports nothing from this package.
 """

@@ -25,7 +25,7 @@ def list_studies(_context, _option, wanted):
 
 
 def chosen(names):
-    """List of (Study, its parts that are named)."""
+    """List of (Study, named parts of the study)."""
     known, parts = all_studies(), {}
     for name in names:
         key, _, part = name.partition("/")
@@ -39,7 +39,7 @@ def chosen(names):
 
 
 def search(studies, wanted, seed, iterations):
-    """--search: print what the study finds."""
+    """--search: print the results of a search."""
     for study, _ in studies:
         if study.search is None:
             raise click.UsageError(f"{study.key} has nothing to search for")
@@ -50,7 +50,7 @@ def search(studies, wanted, seed, iterations):
 
 
 def report(finding, check):
-    """Print what was found; the number of measurements that are out of bounds, if they are checked."""
+    """Print the finding; returns the number of measurements that are out of bounds, if they are checked."""
     if finding.summary:
         click.echo(finding.summary)
     failed = 0
@@ -85,7 +85,7 @@ def report(finding, check):
 def main(
     names, out, publish_it, check, render_only, wanted=None, seed=1, iterations=60, **options
 ):
-    """Measure what the pages of doc/ show; the head of the script says what the options mean."""
+    """Measure the numbers on the pages of doc/; the head of the script explains the options."""
     failed, studies = 0, chosen(names)
     if wanted:
         return search(studies, wanted, seed, iterations)
@@ -105,7 +105,7 @@ def main(
         sys.exit(1)
 
 
-#: of examples/run: the same for one study, which does not search
+#: the command examples/run: the same for one study without a search
 examples = click.Command(
     "examples/run",
     callback=partial(main.callback, ["cases"]),

@@ -1,14 +1,14 @@
 """One engine for all studies.
 
 A study is a module or a package of ``benchmarks/studies`` with a ``STUDY``, and a template
-``benchmarks/templates/PAGE.md.j2``.  Nothing else has to be touched: ``benchmarks/run`` finds it.
+``benchmarks/templates/PAGE.md.j2``.  No other file has to be changed: ``benchmarks/run`` finds the study.
 
     from benchmarks.engine import Curve, Finding, Job, Measurement, Panel, Study, Table, deck
 
     STUDY = Study("drift", "Energy over long runs", 600.0, measure, find)  # see study.py
 
 ``measure(lab)`` runs LAMMPS and returns plain data: numbers, arrays, dictionaries (their keys may be
-tuples) and dataclasses of these.  It judges nothing.  The data are kept as JSON, which names dataclasses
+tuples) and dataclasses of these.  It makes no judgments.  The data are kept as JSON, which names dataclasses
 by their modules, and ``--render`` makes the page from them again.  So the ``Results``, ``Run`` and ``Plan``
 of a study are its own, are used in its modules only, and keep their names.  The Lab (lab.py) runs decks:
 

@@ -13,7 +13,7 @@ INCLUDED = (ROOT / "src" / "GEARQUAT", ROOT / "tests" / "unit")
 
 @cache
 def load(source):
-    """Library of a file ``source`` of C++; compiled again if it or a header has changed."""
+    """Library of a C++ file ``source``; it is compiled again if the file or a header has changed."""
     headers = sorted(header for folder in INCLUDED for header in folder.rglob("*.h"))
     text = b"".join(path.read_bytes() for path in (source, *headers))
     folder = ROOT / "build" / "benchmarks" / source.parent.name

@@ -39,7 +39,7 @@ class Origin:
 
 @contextmanager
 def ticking(tick):
-    """Within this context, call ``tick`` every second: the bar shows that time passes."""
+    """Within this context, call ``tick`` every second, so that the bar shows the elapsed time."""
     ended = threading.Event()
 
     def work():

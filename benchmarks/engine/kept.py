@@ -1,7 +1,7 @@
-"""Runs that need not be repeated: their output exists, and their input is unchanged.
+"""Runs that need not be repeated, because their output exists and their input is unchanged.
 
 The input of a run is its deck with the other files of the deck's folder and of ``examples/common``, its
-variables, the files that these name, the LAMMPS program and the plugin if the run uses it.
+variables, the files named by the variables, the LAMMPS program, and the plugin if the run uses it.
 """
 
 import hashlib
@@ -48,11 +48,11 @@ class Kept:
         return record["error"] if there and record["input"] == self._input else None
 
     def forget(self):
-        """Before a run: discard the record of an earlier one."""
+        """Called before a run: discards the record of an earlier run."""
         self._record.unlink(missing_ok=True)
 
     def write(self, error):
-        """After a run that ended by itself, with LAMMPS' ``error`` or "" for none."""
+        """Called after a run that ended by itself, with LAMMPS' ``error`` or "" for none."""
         files = sorted(path.name for path in self._dumps.glob(f"{self._name}.*"))
         record = {"input": self._input, "error": error, "files": files}
         self._record.write_text(json.dumps(record, indent=1), encoding="utf-8")

@@ -18,10 +18,10 @@ from .sites import read_sites
 
 @dataclass(frozen=True)
 class Job:
-    """One run of the ``deck`` at a path, with ``variables`` (name -> value) on so many ``ranks``.
+    """One run of the ``deck`` at a path, with ``variables`` (name -> value) on this number of ``ranks``.
 
-    ``steps`` orders the jobs and weighs them in the progress bar.  ``plugin``: whether it uses fix gear/quat, so that
-    what is kept of it is of one build of the plugin.
+    ``steps`` determines the order of the jobs and their weights in the progress bar.  ``plugin``: whether it uses fix
+    gear/quat, so that kept results belong to one build of the plugin.
     """
 
     deck: Path
@@ -46,12 +46,13 @@ class Finished:
 
     @cached_property
     def sites(self):
-        """Sites of the dump."""
+        """The Sites of the dump."""
         return read_sites(self.dump)
 
 
 def _is_result(error, may_fail):
-    """True if a run with this error, "" for none, counts; None: there is no run.  See Lab.many."""
+    """True if a run with this error, "" for none, counts as a result; None means that there is no run.  See
+    Lab.many."""
     if not error:
         return error is not None
     return may_fail(error) if callable(may_fail) else may_fail
@@ -60,10 +61,9 @@ def _is_result(error, may_fail):
 class Lab:
     """Runs jobs; ``out`` is the folder that gets ``logs`` and ``dumps``.
 
-    ``jobs``: how many runs go on at once.  ``quick`` and ``full``: whether the study should do less, or
-    also what takes very long.  ``hours``: how long a study that never ends by itself goes on.  ``parts``: the
-    parts of the study that were asked for, all if empty.
-    ``advance(part)`` is told the part of the study's work that has been done since its last call.
+    ``jobs``: number of simultaneous runs.  ``quick`` and ``full``: whether the study should do less, or also very long
+    runs.  ``hours``: duration of a study that never ends by itself.  ``parts``: the requested parts of the study, all
+    if empty.  ``advance(part)`` receives the part of the work of the study that has been done since its last call.
     """
 
     def __init__(self, out, lmp=None, jobs=2, quick=False, full=False, hours=1.0, parts=(), advance=None):
@@ -87,7 +87,7 @@ class Lab:
     def share(self, part):
         """Within this context, all work counts as ``part`` of the work of the study.
 
-        At its end the bar has moved by that part, whether the work was as much as expected or not.
+        At the end of the context the bar has moved by this part, whatever the amount of work.
         """
         weight, left = self._weight, self._left
         self._weight, self._left = weight * part, 1.0
@@ -109,9 +109,9 @@ class Lab:
     def many(self, jobs, may_fail=False, keep=False):
         """Run ``jobs``, name -> Job, side by side, the longest first; returns name -> Finished.
 
-        ``may_fail``: whether an error of LAMMPS is a result, or a function that tells from its text.
-        Any other error ends all runs and is raised as LammpsError.  ``keep``: whether runs that an
-        earlier call has finished with the same input are taken from there; see kept.py.
+        ``may_fail``: whether an error of LAMMPS is a result, or a function that tells from its text.  Any other error
+        ends all runs and is raised as LammpsError.  ``keep``: whether the results of earlier runs with the same input
+        are reused; see kept.py.
         """
         stop, total = threading.Event(), sum(job.steps for job in jobs.values())
         order = sorted(jobs, key=lambda name: -jobs[name].steps)
@@ -131,9 +131,9 @@ class Lab:
         return {name: futures[name].result() for name in jobs}
 
     def in_turn(self, jobs, rounds):
-        """Run ``jobs``, name -> Job, one after the other, in so many rounds, for timing.
+        """Run ``jobs``, name -> Job, one after the other, in this number of rounds, for timing.
 
-        Every round begins with another job.  Returns name -> list of Finished, one per round.
+        Every round begins with a different job.  Returns name -> list of Finished, one per round.
         """
         finished_runs, names = {name: [] for name in jobs}, deque(jobs)
         total = rounds * sum(job.steps for job in jobs.values())

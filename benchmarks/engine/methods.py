@@ -1,4 +1,4 @@
-"""Methods that the studies compare: settings of fix gear/quat, and LAMMPS' own rigid fixes."""
+"""Methods that the studies compare: settings of fix gear/quat, and the rigid fixes of LAMMPS."""
 
 from dataclasses import dataclass
 
@@ -28,14 +28,15 @@ class Method:
         return self.kind != "rigid"
 
 
-#: formulation -> numbers of values that the fix has tuned coefficients for
+#: formulation -> numbers of values for which the fix has tuned coefficients
 TUNED = {"second": (4, 5, 6, 7, 8, 9, 10, 11, 12), "first": (3, 4, 5, 6, 7, 8)}
 
 
 def gear(formulation, values, compensate=False, **more):
-    """Fix gear/quat with so many ``values``; ``more``: variables of the decks, such as passes or c0.
+    """Fix gear/quat with this number of ``values``; ``more``: variables of the decks, such as passes or c0.
 
-    The coefficients are Gear's where there are no others; 0 passes are as many as converge.
+    The coefficients are Gear's if there are no tuned coefficients; with 0 passes the fix repeats passes until they
+    converge.
     """
     if more.get("passes") == 0:
         del more["passes"]
@@ -53,7 +54,7 @@ def gear(formulation, values, compensate=False, **more):
 
 
 def rigid(style, method):
-    """One of LAMMPS' own fixes; ``method`` is the variable of the decks that chooses it."""
+    """A rigid fix of LAMMPS; ``method`` is the variable of the decks that selects the fix."""
     return Method(style.replace("/", "-"), f"fix {style}", {"method": method}, "rigid")
 
 

@@ -1,4 +1,4 @@
-"""Pages from templates: Jinja2, so that the prose can be read and corrected as prose."""
+"""Pages from Jinja2 templates, in which the prose can be read and corrected as prose."""
 
 import jinja2
 
@@ -64,7 +64,7 @@ def _environment(page, finding):
 
 
 def render(template, study, finding, provenance):
-    """Text of a template of a study; ``provenance``: sentence on where it was measured."""
+    """Text of a template of a study; ``provenance``: a sentence on the origin of the measurement."""
     environment = _environment(study.page, finding)
     names = {"study": study, "provenance": provenance, "measurements": finding.measurements}
     return environment.get_template(template).render(**names, **finding.context).rstrip() + "\n"

@@ -46,12 +46,12 @@ class Bars:
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes with ``curves``, a sequence, or with Bars in their place.
+    """One pair of axes with ``curves``, which are a sequence of Curve or Bars.
 
     ``log``: "x", "y" or "xy".  ``linear``: y is linear up to this size and logarithmic beyond, for
     values of both signs.  ``ticks``: words for x = 0, 1, 2, ...; ``xticks``: the values at which x
     is labeled.  ``xlim``, ``ylim``: ends of the axes.  ``lost``: (x, color) of runs that ended early,
-    drawn as crosses at the top.  ``legend``: whether the panel has one of its own, of so many ``columns``.
+    drawn as crosses at the top.  ``legend``: whether the panel has its own legend, with this number of ``columns``.
     """
 
     title: str
@@ -131,10 +131,10 @@ def draw_panel(axis, panel):
 
 
 def draw(path, panels, columns=None, note="", share_y=False):
-    """Draw ``panels`` in rows of so many ``columns`` (default: one row).
+    """Draw ``panels`` in rows with this number of ``columns`` (default: one row).
 
-    ``note``: a line below them; ``share_y``: whether they have one y axis.
-    Panels without legends of their own share one, which has every label once.
+    ``note``: a line below the panels; ``share_y``: whether they share one y axis.
+    Panels without their own legends share one legend, which contains every label once.
     """
     columns = columns or len(panels)
     rows, shared = -(-len(panels) // columns), {}

@@ -34,7 +34,7 @@ def system():
 
 
 def commit(*paths):
-    """The last commit that changed ``paths``, and whether they are changed since; "" without git."""
+    """The last commit that changed ``paths``, and whether they have been changed since then; "" without git."""
 
     if not shutil.which("git"):
         return ""

@@ -13,7 +13,7 @@ ANY_BEGIN, END = "<!-- begin: ", "<!-- end -->"
 
 
 class PublishError(RuntimeError):
-    """A page lacks the markers to write between."""
+    """Raised if a page lacks the markers of a block."""
 
 
 def begin(command):
@@ -53,7 +53,7 @@ def check_places(study, root=ROOT):
 def publish(study, finding, provenance, out, root=ROOT):
     """Copy page and pictures from ``out``, the folder of the run, and write the blocks.
 
-    The pictures are those that the page or a block shows.
+    Only pictures that the page or a block shows are copied.
     """
     page, folder = root / "doc" / f"{study.page}.md", root / "doc" / study.page
     folder.mkdir(parents=True, exist_ok=True)

@@ -12,11 +12,11 @@ from lammps_gearquat.launch import LammpsError, find, started, words_of
 
 
 class Interrupted(LammpsError):
-    """A run was ended because another one failed."""
+    """Raised if a run was ended because another run failed."""
 
 
 def find_lmp(lmp=None):
-    """The LAMMPS program: the one given, or beside this Python, or on the PATH."""
+    """The LAMMPS program: the given program, or the program in the folder of this Python or on the PATH."""
     program = lmp or find("lmp")
     if not program or not shutil.which(str(program)):
         place = lmp or Path(sys.executable).parent / "lmp"

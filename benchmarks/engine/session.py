@@ -1,8 +1,8 @@
 """Runs of decks in a process that holds LAMMPS as a library; only their ``run`` command is timed.
 
-That command is set-up, the start of the method and all steps.  Starting LAMMPS, reading the data file
-and defining the scene are not timed.  Every run has a LAMMPS of its own, which takes the deck's
-variables as the command line would.
+The time of this command includes the set-up, the start of the method and all steps.  Starting LAMMPS, reading the data
+file and defining the scene are not timed.  Every run has a separate LAMMPS, which takes the variables of the deck as
+from the command line.
 """
 
 import gc
@@ -18,16 +18,16 @@ from lammps_gearquat.launch import LammpsError, open_library
 from lammps_gearquat.logs import Log
 from lammps_gearquat.trials.worker import Worker
 
-#: a run may take so many seconds, and so many times its expected time, longer: lost atoms can catch
-#: LAMMPS in an endless loop
+#: time limit of a run: these seconds plus this multiple of the expected time, because LAMMPS can hang when atoms are
+#: lost
 PATIENCE = 20.0
-#: the median is steady when its standard error is below this part of it; runs longer than SHORT
-#: seconds are steady by themselves, and there are no more than MOST_ROUNDS
+#: the median is steady when its relative standard error is below this number; runs longer than SHORT seconds always
+#: count as steady, and there are at most MOST_ROUNDS
 STEADY, SHORT, MOST_ROUNDS = 0.02, 0.05, 20
 
 
 class RunError(LammpsError):
-    """A run that LAMMPS ended with an error, as where a step is too large."""
+    """Raised if LAMMPS ended a run with an error, for example because the step is too large."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def _run(lmp, variables, composition):
 def perform(deck, variables, log, composition, tell):
     """Outcome of a deck whose last line is ``run ${steps}`` after ``${last}``, as in in.motion; a request to a Worker.
 
-    ``composition``: parts of the step, of any sign, that are steps of their own and make up each step.
+    ``composition``: parts of the step, of any sign, which are separate steps and make up each step.
     Raises LammpsError if the scene cannot be defined, RunError if its run fails.
     """
     os.chdir(deck.parent)
@@ -91,7 +91,7 @@ def perform(deck, variables, log, composition, tell):
             raise LammpsError(f"{log.name}: {error}") from error
         *atoms, before = _state(lmp)
         gc.collect()
-        gc.disable()  # for good: every run collects before its time counts
+        gc.disable()  # permanently: garbage is collected before the timing of every run
         begin = time.perf_counter()
         try:
             _run(lmp, variables, composition)
@@ -106,7 +106,7 @@ def perform(deck, variables, log, composition, tell):
 
 # --- the side of the caller -----------------------------------------------------------------------
 class Session:
-    """LAMMPS in a process of its own, as a context; one run after the other.  ``logs``: a folder."""
+    """LAMMPS in a separate process, as a context; one run after the other.  ``logs``: a folder."""
 
     def __init__(self, logs):
         self.logs = Path(logs).resolve()
@@ -121,7 +121,7 @@ class Session:
         self._folder.cleanup()
 
     def run(self, deck, variables, name, expected=0.0, composition=()):
-        """Outcome of a deck, see ``perform``; ``expected``: seconds that it takes, roughly.
+        """Outcome of a deck, see ``perform``; ``expected``: approximate duration in seconds.
 
         Raises LammpsError, or RunError for a run that failed or did not end in time.
         """
@@ -152,7 +152,7 @@ class Timing:
 
     @property
     def error(self):
-        """Standard error of the median relative to it, as of a normal distribution."""
+        """Relative standard error of the median, as for a normal distribution."""
         return 0.93 * (self.high - self.low) / np.sqrt(self.count) / self.median
 
     @property
@@ -164,8 +164,8 @@ class Timing:
 def time_in_turn(competitors, rounds, once, most):
     """Timings of ``competitors``, each timed by ``once(competitor)`` in every round.
 
-    A slow minute of the machine hits all of them alike.  After ``rounds`` those whose median is not
-    steady go on, up to ``most``.
+    If the machine is slow for a while, all competitors are affected alike.  After ``rounds`` rounds, competitors whose
+    median is not steady continue, up to ``most`` rounds.
     """
     seconds = {competitor: [] for competitor in competitors}
     for number in range(max(rounds, most)):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-#: how sure a deviation must be to count as one, over all values that are compared at once
+#: confidence level of a significant deviation, over all values that are compared at once
 CONFIDENCE = 0.99
 
 
@@ -76,10 +76,9 @@ def allowed(count, freedoms):
 def slope(time, values):
     """Least-squares slope of ``values`` (n,) against ``time`` (n,), and its standard error.
 
-    Neighboring errors are alike, so the scatter about the line does not shrink as it would with n independent
-    samples: the standard error follows W. K. Newey and K. D. West, Econometrica 55,
-    703 (1987), Eq. 5, with lags up to a twentieth of the series.  Raises ValueError for fewer than 20
-    samples.
+    Neighboring errors are correlated, so the error of the slope is larger than for n independent samples.  The standard
+    error follows W. K. Newey and K. D. West, Econometrica 55, 703 (1987), Eq. 5, with lags up to a twentieth of the
+    series.  Raises ValueError for fewer than 20 samples.
     """
     n = len(time)
     if n < 20:

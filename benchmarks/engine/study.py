@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 class Measurement:
     """One number: ``what`` it is, its ``value`` and, where it is known, one standard ``error``.
 
-    ``spec`` formats value and error, ``unit`` follows them, and ``remark`` stands behind in parentheses.
+    ``spec`` formats value and error, ``unit`` follows them, and ``remark`` is appended in parentheses.
     ``least`` and ``most`` bound the value for ``--check``; None stands for no bound.
     """
 
@@ -24,7 +24,7 @@ class Measurement:
 
     @property
     def text(self):
-        """The value with its uncertainty, as a page shows it."""
+        """The value with its uncertainty, as shown on a page."""
         text = format(self.value, self.spec).replace(",", " ")
         if self.error is not None:
             text += f" ± {format(self.error, self.spec)}"
@@ -39,7 +39,7 @@ class Measurement:
 
     @property
     def holds(self):
-        """True if the value lies within its bounds.  NaN lies within none."""
+        """True if the value is within its bounds.  NaN is outside of any bounds."""
         least = -math.inf if self.least is None else self.least
         most = math.inf if self.most is None else self.most
         return not self.bounds or bool(least <= self.value <= most)
@@ -47,7 +47,7 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Table:
-    """``rows`` of as many cells as the ``header`` has; written as CSV and shown as Markdown."""
+    """``rows`` with as many cells as the ``header``; a table is written as CSV and shown as Markdown."""
 
     header: tuple
     rows: list
@@ -57,7 +57,7 @@ class Table:
 class Finding:
     """The results of a study, derived from its data.
 
-    ``measurements``: a sequence of Measurement.  ``tables``: name -> Table; each is left as a CSV file.
+    ``measurements``: a sequence of Measurement.  ``tables``: name -> Table; each is also written as a CSV file.
     ``pictures``: name -> tuple of Panel (see panels.py), or a function that draws into the path it gets;
     names without a suffix become PNG files, and those that the page shows are published.
     ``context``: further names of the templates.  ``summary``: printed in place of the measurements.
@@ -77,7 +77,7 @@ class Study:
     ``key``: its name on the command line.  ``title``: the heading of its page.  ``seconds``: duration on
     two quiet cores.  ``measure(lab)`` returns plain data, ``find(data)`` a Finding.  ``page``: the page
     doc/PAGE.md (default: the key), written from the template PAGE.md.j2; its pictures go to doc/PAGE.
-    ``parts``: what can be run alone, as KEY/PART.  ``blocks``: file of the checkout -> template of the
+    ``parts``: parts that can be run alone, as KEY/PART.  ``blocks``: file of the checkout -> template of the
     block that the study writes there.  ``search(formulation, values, seed, iterations)``, if there is
     one, returns the text that --search prints, or raises ValueError.
     """

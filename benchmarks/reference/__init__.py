@@ -1,6 +1,6 @@
 """Reference solutions of rigid-body motion, independent of the fix, to judge errors of 1e-12.
 
-Nothing here shares code with the fix or the scene generator.  Everything works in NumPy's long
+This package shares no code with the fix or the scene generator.  Everything works in NumPy's long
 double.  Contents and use::
 
     from benchmarks.reference import (

@@ -1,4 +1,5 @@
-"""Deflection by a central potential for many energies and impact parameters at once: the stand-in of flights of two atoms.
+"""Deflection by a central potential for many energies and impact parameters at once: a substitute for flights of two
+atoms.
 
 Formulas and quadrature are as in central.py; here the turning point is searched for.  Bodies of energy E orbit at
 r_o.  For b^2 above B(r_o), the turning point is outside of r_o, or else inside of r_i, the inner radius with W(r_i) =

@@ -1,4 +1,4 @@
-"""Flights of two rigid bodies with forces and equations of motion of their own, by SciPy's solvers.
+"""Flights of two rigid bodies with independent forces and equations of motion, by SciPy's solvers.
 
 A state (2, 13) has for each body center, velocity, quaternion (scalar first, from the pose of the deck) and
 angular momentum L along the axes of space, so points and linear bodies need no other equations:
@@ -142,7 +142,7 @@ class Encounter:
         for columns in (CENTER, VELOCITY, Q, MOMENTUM):
             sizes[:, columns] = np.abs(start.reshape(2, 13)[:, columns]).max() or 1.0
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of tolerances near the smallest one
+            warnings.simplefilter("ignore")  # warnings about tolerances near the smallest possible tolerance
             found = solve_ivp(
                 self.rates, (0.0, time), start, method, rtol=tolerance, atol=tolerance * sizes.ravel()
             )

@@ -138,7 +138,7 @@ def bodies_from_sites(site_masses, positions, velocities, body, dtype=np.longdou
     """Bodies and their state from point masses: (RigidBodies, State).
 
     ``site_masses`` (S,); ``positions`` and ``velocities`` (S, 3), unwrapped; ``body`` (S,), rising
-    from 0.  The velocities need not be quite rigid: momentum and angular momentum are kept.
+    from 0.  The velocities need not be exactly rigid; momentum and angular momentum are preserved.
     """
     masses, x, v = (np.asarray(a, dtype=dtype) for a in (site_masses, positions, velocities))
     body = np.asarray(body)

@@ -28,12 +28,12 @@ COLUMNS_DOUBLE_FORCES = 5
 TOLERANCE, TOLERANCE_DOUBLE_FORCES = 1e-17, 1e-14
 #: a step shrinks to at least, grows to at most, this multiple; the rest is a margin
 SHRINK, GROW, MARGIN = 0.2, 4.0, 0.9
-#: a step below this fraction of the first one asks for more than rounding or a jump allows
+#: a step below this fraction of the first step means that rounding or a jump of the forces prevents the tolerance
 SMALLEST = 1e-6
 
 
 class NotReached(RuntimeError):
-    """The tolerance is below what the float type or the forces can give."""
+    """Raised if the tolerance is below the precision of the float type or of the forces."""
 
 
 def extrapolation_weights(counts):
@@ -88,7 +88,7 @@ class GraggBulirschStoer:
         return change, float(relative.max() / self.tolerance)
 
     def first_step(self, y, slope, span):
-        """A step over which no part of the state changes by more than a tenth of itself."""
+        """A step in which no part of the state changes by more than a tenth of its value."""
         scale, speed = self.scales(y), self.scales(slope)
         moving = (speed > 0) & (scale > 0)
         times = scale[moving] / speed[moving]
@@ -110,19 +110,19 @@ class GraggBulirschStoer:
         step = first = self.fixed_step or self.first_step(y, slope, times[-1] - times[0])
         for stop in times[1:]:
             while t != stop:
-                # equal parts of the remaining time, so that the last one is not tiny
+                # equal parts of the remaining time, so that the last part is not tiny
                 parts = max(np.ceil(abs(stop - t) / step * (1 - 1e-12)), 1)
                 h = (stop - t) / parts
                 change, error = self._change(t, y, slope, h)
                 following = self._next_step(h, error)
                 if error <= 1 or self.fixed_step:
-                    # Kahan's sum: what y cannot hold of the change is added to the next one
+                    # Kahan's sum: the rounding error of y is added to the next change
                     change = change + carry
                     after = y + change
                     carry = change - (after - y)
                     y, t = after, stop if parts == 1 else t + h
                     slope = self._rates(t, y)
-                    # a step cut short to meet a time says little of how long one may be
+                    # a step that was shortened to end at a given time does not show how long a step may be
                     step = max(following, step) if error <= 1e-3 else following
                 else:
                     step = following
@@ -138,11 +138,10 @@ class GraggBulirschStoer:
 def integrate(problem, times, tolerance=None, columns=None, fixed_step=None):
     """States of a Problem at ``times``, which rise from 0 or fall from it; 0 need not be listed.
 
-    Everything is done in the float type of the problem.  ``tolerance`` bounds the error estimate of
-    every step, relative to the largest position, velocity, ... of any body; it and ``columns``
-    follow from the float type of the field's forces unless given.  Across forces that jump no error
-    estimate helps: there a ``fixed_step`` takes its place (an upper bound: the time between two of
-    ``times`` is cut into equal parts), and two of them tell the error.
+    Everything is done in the float type of the problem.  ``tolerance`` bounds the error estimate of every step,
+    relative to the largest position, velocity, ...  of any body; it and ``columns`` follow from the float type of the
+    field's forces unless given.  If forces jump, no error estimate helps; in this case a ``fixed_step`` takes its place
+    (an upper bound: the time between two of ``times`` is cut into equal parts), and two of them tell the error.
     """
     dtype = problem.dtype.type
     times = [dtype(t) for t in times]

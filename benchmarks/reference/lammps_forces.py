@@ -1,8 +1,7 @@
 """Forces and potential energy from LAMMPS itself, in this process, for any input script.
 
-The script is read with LAMMPS' own switch -skiprun, so it comes to its end without a single step:
-it starts as if every ``run`` and ``minimize`` were left out.  The fixes that
-integrate are then taken away, and every evaluation is
+The script is read with LAMMPS' own switch -skiprun, so it ends without a single step, as if every ``run`` and
+``minimize`` were left out.  The fixes that integrate are then deleted, and every evaluation consists of
 
     place atoms -> run 1 pre no post no -> read forces
 
@@ -24,16 +23,16 @@ from lammps_gearquat.launch import open_library
 
 from .equations import Problem, bodies_from_sites
 
-#: fixes that integrate and are taken away: the reference integrates instead
+#: fixes that integrate; they are deleted, because the reference integrates instead
 INTEGRATORS = re.compile(r"(gear/quat|rigid(/nve)?(/small)?(/omp)?|nve(/\w+)?)$")
-#: fixes that make a trajectory something else than the solution of Newton's equations in a field
+#: fixes with which a trajectory is not the solution of Newton's equations in a field
 NO_REFERENCE = re.compile(
     r"(rigid\S*/(nvt|npt|nph)|nvt|npt|nph|langevin|temp/|press/|shake|rattle|box/relax|deform|move)"
 )
 
 
 class DeckError(ValueError):
-    """An input script that cannot serve as a field; the message says what is required."""
+    """Raised for an input script that cannot serve as a field; the message states what is required."""
 
 
 @contextlib.contextmanager
@@ -91,7 +90,7 @@ class LammpsForces:
             raise DeckError(f"{self.deck.name}: {str(error).strip()}") from error
 
     def _read(self):
-        """Read the script, take away what integrates, and evaluate once."""
+        """Read the script, delete the fixes that integrate, and evaluate once."""
         with _inside(self.deck.parent):
             self._run(self.lmp.file, self.deck.name)
         if not self.lmp.extract_setting("box_exist") or self.lmp.get_natoms() < 1:
@@ -133,7 +132,7 @@ class LammpsForces:
         return dict(re.findall(r"^\s*Fix\[.*?\]:\s*(\S+?),\s*style = (\S+?),", text, re.MULTILINE))
 
     def _refuse_motion(self):
-        """No fix that is left may move an atom."""
+        """Check that no remaining fix moves an atom."""
         self.energy_and_forces(self._start)
         moved = self.per_atom("x") - self._start
         periods = np.where(self._periodic, np.rint(moved @ self._from_box.T), 0)
@@ -175,7 +174,7 @@ class LammpsForces:
         return self._start[np.searchsorted(self._all_ids, self.ids)]
 
     def choose(self, ids):
-        """From now on the sites are the atoms with these IDs, in this order."""
+        """Make the atoms with these IDs, in this order, the sites."""
         self.ids = np.asarray(ids)
         unknown = np.setdiff1d(self.ids, self._all_ids)
         if len(unknown):

@@ -207,7 +207,7 @@ class Motion:
         self._free = FreeRotation(self.problem.bodies.moments)
 
     def kick(self, time):
-        """The forces act for ``time``; they are evaluated unless they are known from the last kick."""
+        """A kick: the forces act for ``time``; they are evaluated unless they are known from the last kick."""
         bodies = self.problem.bodies
         if self._forces is None:
             _, force, torque = self.problem.forces(self.center, self.rotation)
@@ -256,7 +256,7 @@ def largest_energy_error(problem, time, splitting, steps):
 
 
 def work_precision(problem, time, reference, splitting, numbers):
-    """A WorkPoint for each of ``numbers`` of steps, which stands in the place of the tolerance."""
+    """A WorkPoint for each of the ``numbers`` of steps, which replace the tolerances."""
     points = []
     for steps in numbers:
         ((state, evaluations),) = states(problem, time, splitting, steps)

@@ -1,7 +1,7 @@
 """The reference state of a problem at a time, computed once: kept in memory and, if asked, on disk.
 
-The key is the content: shapes, start, field, time, tolerance.  Anything else than the same problem
-is another entry, so a folder of them never has to be cleared.
+The key is the content: shapes, start, field, time, tolerance.  Every different problem is a separate entry, so a folder
+of entries never has to be cleared.
 """
 
 import hashlib
@@ -54,7 +54,7 @@ def _load(path, dtype):
 
 
 def _save(path, state):
-    """Write a state; a reader never sees half a file."""
+    """Write a state; a reader never sees an incomplete file."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"{path.name}.{os.getpid()}")
     with open(part, "wb") as file:
@@ -98,7 +98,7 @@ def reference_states(problem, times, folder=None, tolerance=None, fixed_step=Non
 
 
 def _compute(problem, times, accuracy):
-    """States at ``times``, not looked up."""
+    """States at ``times``, computed without the cache."""
     if isinstance(problem.field, FreeField):
         from .free_top import exact_state  # needs mpmath
 
