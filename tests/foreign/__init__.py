@@ -1,4 +1,4 @@
-"""LAMMPS as judge: its own decks, its own styles and its own unit tests beside fix gear/quat.
+"""LAMMPS as judge: the decks, styles and unit tests of LAMMPS together with fix gear/quat.
 
-python -m foreign [--all] [--publish]        what `tests/run foreign` calls
+python -m foreign [--all] [--publish]        the command that `tests/run foreign` calls
 """

@@ -25,7 +25,7 @@ from .page import RELEASES, page
 SHORT = r"examples/rigid/in\.rigid(\.small|\.poems|\.early|\.property|\.nve|\.infile)?$"
 SCRATCH = ROOT / "build" / "foreign"
 PARTS = ("styles", "suffixes", "decks", "units")
-#: what the decks of a release may take; the others are "not run"
+#: time limit for the decks of a release; the remaining decks are "not run"
 SECONDS = 3600
 
 
@@ -49,7 +49,7 @@ class Report:
 def try_styles(report, lammps, ranks, only, temp=()):
     """All styles of one LAMMPS: outcomes, reasons, numbers of runs and of restarts.
 
-    ``temp``: kinds of styles to try beside keyword temp; without any, all are tried without it.
+    ``temp``: kinds of styles to try with keyword temp; if empty, all styles are tried without this keyword.
     """
     name = lammps.name + ", temp" * bool(temp)
     begin, folder = time.monotonic(), SCRATCH / f"styles-{name}"
@@ -119,7 +119,7 @@ def try_decks(report, source, programs, release, only):
     begin, verdicts = time.monotonic(), []
     pages = ("src/fix_gear_quat.rst", "howto/from_rigid.md")
     manual = " ".join(" ".join((ROOT / "doc" / name).read_text().split()) for name in pages)
-    # where most rigid fixes are comes first
+    # folders with most rigid fixes first
     for path in sorted(decks.decks_of(source), key=lambda path: path.parts[1] != "rigid"):
         if not re.search(only, str(path)):
             continue

@@ -1,4 +1,4 @@
-"""Every fix and compute of LAMMPS beside fix gear/quat: what has to be the same, and is.
+"""Every fix and compute of LAMMPS together with fix gear/quat: tests that results are the same.
 
 For each scene of styles.py these are compared, positions and velocities as well as every output of
 the other style:
@@ -42,11 +42,11 @@ MOVERS = {
 }
 #: two runs of the same method: relative to the largest value of a kind
 SAME = 2e-9
-#: in units of the error of the reference, which is found by halving its step
+#: in units of the error of the reference, which is determined by halving its step
 WITHIN = 4.0
 #: error of fix rigid at step DT in the plain scene, in units of that at DT/4 to DT/8
 BROAD = 1e-5
-#: what LAMMPS says where variants of styles cannot do what a style needs
+#: messages of LAMMPS if variants of styles lack a feature that a style needs
 NO_VARIANT = re.compile(r"INTEL package does not support")
 REFUSES = re.compile(r"[Ff]ix gear/quat")
 
@@ -144,7 +144,7 @@ def beyond(ours, coarse, fine, a_try):
     """What of ``ours`` is further from the finer reference than its error allows, as text."""
     error = distances(coarse, fine, a_try.sums)
     apart = distances(ours, fine, a_try.sums)
-    if a_try.pieces:  # what the style counts begins anew with each piece
+    if a_try.pieces:  # counts of the style start again with each part of the run
         apart = {name: apart[name] for name in apart if name in ("x", "v", "atoms", "error")}
     wrong = worst(apart, {name: WITHIN * error[name] + a_try.floor for name in error})
     if not wrong:
@@ -219,7 +219,7 @@ class Campaign:
         return script(*words, alone=self.temp)
 
     def _answers(self, *runs):
-        """Answers of these runs; those that have not been made are made first, all together."""
+        """Answers of these runs; missing runs are made first, all together."""
         for ranks in self.ranks:
             jobs = {
                 run: self._script(run)
@@ -235,7 +235,7 @@ class Campaign:
         a_try = self.scenes[n][2]
         if self.temp:
             return []
-        # a rigid fix takes its first forces from the fixes that are defined before
+        # a rigid fix includes in its first forces only fixes that are defined before it
         rigid = SceneRun(n, "after" if a_try.behind else "before").rigid()
         if a_try.kind in (PASSIVE, FORCE, TAKEN):
             return [SceneRun(n, divide=4), rigid._replace(divide=4), rigid._replace(divide=8)]
@@ -276,7 +276,7 @@ class Campaign:
         name = re.compile(rf"\b{re.escape(outcome.style)}\b")
 
         def said(answer):
-            """What the fix, or else LAMMPS, has against the style."""
+            """The reason why the fix, or otherwise LAMMPS, refuses the style."""
             warnings = (
                 line
                 for line in answer.warnings

@@ -1,7 +1,7 @@
-"""LAMMPS' own decks with fix gear/quat in place of a fix of the rigid family: text in, text out.
+"""Decks of LAMMPS with fix gear/quat in place of a fix of the rigid family: text in, text out.
 
 A deck is followed line by line, as LAMMPS reads it; decks of this kind have no loops around their
-bodies.  What a converted deck changes besides the fix is the number of steps, and output.
+bodies.  Besides the fix, conversion changes only the number of steps and the output.
 """
 
 import re
@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from lammps_gearquat.trials import script
 
 RIGID = re.compile(r"^(rigid($|/)|poems$)")
-#: fixes whose action hangs on chance or on the number of steps: left out where motion is compared
+#: fixes whose action depends on chance or on the number of steps; they are left out of comparisons of the motion
 _SOME = re.compile(
     r"^(langevin|srd|deposit|pour|gcmc|evaporate|viscosity|temp/.*|momentum.*|hmc|lb/viscous|gld"
     r"|thermal/conductivity|dt/reset|adapt|langevin/drude|balance|print|ave/.*|halt|deform|press/.*)$"
@@ -53,8 +53,8 @@ def has_random_forces(text):
 def converted(line):
     """The command with gear/quat in place of the rigid style, all other words kept.
 
-    Translation and rotation have chains of their own in rigid/nvt, of ten variables by default; of
-    `tparam` the first number is their length.
+    In rigid/nvt, translation and rotation have separate chains, with ten variables by default; the first number of
+    `tparam` is their length.
     """
     words = line.words[4:]
     if "nvt" in line.words[3]:
@@ -69,7 +69,7 @@ def converted(line):
 
 
 def _shortened(line, most):
-    """A run of at most so many steps, without `every` and `start`."""
+    """A run of at most this number of steps, without `every` and `start`."""
     steps = line.words[1]
     steps = steps if "$" in steps else str(min(int(float(steps)), most))
     return f"run {steps}"

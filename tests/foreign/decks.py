@@ -13,20 +13,20 @@ from running import Result
 
 from . import convert
 
-#: steps with the deck's own fix first, then so many with each of the fixes that are compared
+#: steps with the original fix, followed by steps with each of the compared fixes
 FIRST, STEPS, WHOLE = 100, 10, 60
-#: of a run before, if the deck needs it: many begin by pushing atoms apart
+#: steps of an earlier run, if the deck needs one: many decks begin by pushing atoms apart
 LONG = 2000
 #: in units of the error of the reference, which is found by halving its step
 WITHIN = 4.0
 #: seconds of processor time that a deck may take with its own fix, and with fix gear/quat in its place
 PATIENCE, PATIENCE_OURS = 15, 60
-#: seconds on the clock for one of processor time, on a machine that does other work, too
+#: seconds of wall time per second of processor time, on a machine with other load
 BUSY = 10
-#: the error of a reference that can tell, in units of how far atoms move
+#: largest error of a usable reference, in units of the displacement of atoms
 TELLS = 0.05
 
-#: why a deck is refused: message of the fix, name, and where the manual says so
+#: reasons why a deck is refused: message of the fix, name, and pattern of the manual
 REASONS = (
     (
         r"constant pressure requires all atoms to be in bodies",
@@ -85,7 +85,7 @@ REASONS = (
     (r"minimiz", "energy minimization", r"refuses\s+:doc:`energy minimization"),
 )
 
-#: why a deck does not run here as it is: message of LAMMPS, and what the page says
+#: reasons why an unchanged deck does not run here: message of LAMMPS, and text of the page
 CANNOT = (
     (r"still running", f"takes longer than {PATIENCE} s here with its own fix"),
     (r"[Cc]annot open|No such file|not found", "a file of it is not in Debian's source"),
@@ -93,7 +93,7 @@ CANNOT = (
     (r"", "LAMMPS ends it with an error"),
 )
 
-#: why a deck that runs cannot be compared: part of the message, and what the page says
+#: reasons why a deck that runs cannot be compared: part of the message, and text of the page
 INCOMPARABLE = (
     ("Resetting timestep size is not allowed", "another fix forbids a smaller step"),
     ("rotational kinetic energy of the bodies is zero", "bodies do not rotate yet where it begins"),
@@ -107,7 +107,7 @@ def _children_seconds():
 
 
 def run(lammps, text, folder, patience):
-    """Result of a deck, which has so many seconds of processor time."""
+    """Result of a deck, which has this number of seconds of processor time."""
     used, still_running = _children_seconds(), f"ERROR: still running after {patience} s\n"
 
     def limit(process):
@@ -132,7 +132,7 @@ class DeckVerdict:
     line: str
     result: str = "NEITHER"
     reason: str = ""
-    #: error of ours at the deck's own step in units of that of the deck's own fix
+    #: error of our fix at the step of the deck, in units of the error of the original fix
     ratio: float = float("nan")
     notes: list = field(default_factory=list)
 
@@ -160,7 +160,7 @@ def _copy(deck, folder):
 
 
 def _error(result):
-    """First line of LAMMPS' error, or of what else ended it; "" if it ended well."""
+    """First line of LAMMPS' error, or of another cause of the end; "" for a normal end."""
     if result.returncode == 0:
         return ""
     if result.errors:
@@ -191,7 +191,7 @@ class Deck:
         self.programs, self.manual = programs, manual
 
     def _refused(self, verdict, error):
-        """Enters an error: a refusal if it has a reason that the manual has, else NEITHER."""
+        """Records an error: a refusal if the manual states its reason, otherwise NEITHER."""
         verdict.result = "NEITHER"
         for pattern, name, manual in REASONS:
             found = re.search(pattern, error)
@@ -225,7 +225,7 @@ class Deck:
                 error = self._whole(ours)
             if not error:
                 break
-            # which of them: by trying each alone
+            # find the one that fails by trying each alone
             errors = {n: error if len(ours) == 1 else self._whole({n}) for n in ours}
             bad = {n for n in ours if errors[n]}
             if not bad:
@@ -245,13 +245,13 @@ class Deck:
         return _error(run(self.program, text, self.folder, patience))
 
     def _choose(self):
-        """Sets ``program``; returns the error of the deck as it is, "" if it runs."""
+        """Sets ``program``; returns the error of the unchanged deck, "" if it runs."""
         errors = []
         for self.program, self.earlier in itertools.product(self.programs, (WHOLE, LONG)):
             errors.append(self._whole(set(), PATIENCE))
             if not errors[-1]:
                 return ""
-        return errors[0]  # of the LAMMPS that has more packages
+        return errors[0]  # the error of the LAMMPS that has more packages
 
     def _compare(self, number, verdict):
         if convert.segment(self.text, number) is None:
@@ -275,7 +275,7 @@ class Deck:
         self._judge(verdict, _state(self.folder / "begin"), ends)
 
     def _judge(self, verdict, begin, ends):
-        """Our end at a quarter of the step against that of the rigid fix at an eighth."""
+        """Compares our final state at a quarter of the step with the final state of the rigid fix at an eighth."""
         fine = ends["rigid", 8]
         moved = _apart(begin, fine)
         error = _apart(ends["rigid", 4], fine)

@@ -1,4 +1,4 @@
-"""LAMMPS for many scenes: a worker process on so many ranks, begun anew where a scene has ended it."""
+"""LAMMPS for many scenes: a worker process with several ranks, which is restarted if a scene has ended it."""
 
 import re
 import subprocess
@@ -21,7 +21,7 @@ SUFFIXES = {
     "omp": ("OPENMP", "-pk", "omp", "1"),
     "intel": ("INTEL", "-pk", "intel", "0", "mode", "double", "pppm_table", "no"),
 }
-#: for INTEL the pair style, too, has to have a variant
+#: for INTEL the pair style must have a variant, too
 OTHER_PAIRS = {"intel": {scene.PAIR: "lj/charmm/coul/charmm"}}
 
 
@@ -29,7 +29,7 @@ OTHER_PAIRS = {"intel": {scene.PAIR: "lj/charmm/coul/charmm"}}
 class Engine(Lammps):
     """A LAMMPS with its Python module.
 
-    ``words`` are words of its command line, ``pairs`` pair styles -> those that jobs have in their place.
+    ``words`` are words of its command line, ``pairs`` maps pair styles to the styles that replace them in jobs.
     """
 
     words: tuple = ()

@@ -43,7 +43,7 @@ def by_result(outcomes):
 
 
 def not_kept(outcomes):
-    """Styles whose effect fix rigid does not reproduce either."""
+    """Styles whose effect even fix rigid does not reproduce."""
     excused = (o for o in outcomes if o.excused and o.result != "DIFFERS")
     return "\n".join(sorted({f"* `{o.name}` ({'; '.join(o.excused)})" for o in excused}))
 
@@ -59,7 +59,7 @@ def with_temp(tried, temp):
 
 
 def refused_by_temp(every, beside_temp):
-    """Styles that are refused beside keyword temp only."""
+    """Styles that are refused only with keyword temp."""
     refused = [{o.style for o in found if o.result == "refused"} for found in (every, beside_temp)]
     return sorted(refused[1] - refused[0])
 
@@ -113,7 +113,7 @@ def decks_table(verdicts):
 
 
 def measured_at(commits):
-    """The commit of all parts, or the one of each part."""
+    """The commit of all parts, or the commits of the parts if they differ."""
     if len(set(commits)) == 1:
         return f"Commit {commits[0]}"
     parts = zip(("Other styles", "variants", "decks", "unit tests"), commits)

@@ -1,7 +1,7 @@
 """The scene that every style is tried in: 27 rigid molecules and 8 free atoms, in lj units.
 
-A molecule has four atoms, not in a plane, with bonds, angles, a dihedral and an improper, so that
-styles that look at topology have some to look at; the forces are smooth, and the derivatives of an energy.
+A molecule has four atoms, not in a plane, with bonds, angles, a dihedral and an improper, so that styles that depend on
+the topology have an effect; the forces are smooth, and the derivatives of an energy.
 """
 
 import numpy as np
@@ -121,7 +121,7 @@ def begin(atom_style="full"):
 
 
 def after_restart():
-    """Lines that follow read_data or read_restart: what no restart file keeps."""
+    """Lines that follow read_data or read_restart: settings that restart files do not contain."""
     return [
         *FORCES,
         "neighbor 0.4 bin",

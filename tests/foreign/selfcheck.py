@@ -1,4 +1,4 @@
-"""The judge judged: errors of 1 %, and degrees of freedom that are too many, have to be seen."""
+"""Tests of the judge: it has to detect errors of 1 % and surplus degrees of freedom."""
 
 import copy
 from dataclasses import replace
@@ -13,7 +13,7 @@ WRONG = {
     "rhok": "1 1 1 0.505 0.1",
     "aveforce": "NULL 0.101 NULL",
 }
-#: the epsilon of the molecules, and one that is wrong by 1 %
+#: the epsilon of the molecules, and an epsilon that is wrong by 1 %
 EPSILON, WRONG_EPSILON = "* * 0.3 ", "* * 0.303 "
 
 

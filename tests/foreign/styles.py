@@ -15,10 +15,10 @@ from . import scene
 PASSIVE = "passive"  # nothing
 FORCE = "force"  # adds forces that depend on the present state only
 CHANCE = "chance"  # draws random numbers in each step
-COUNT = "count"  # acts in certain steps: compared with fix rigid at the same step
-MOVES = "moves"  # changes velocities, places or masses of bodies' atoms behind the fix's back
-TAKEN = "taken over"  # changes velocities, which bodies take over
-RIGID_ONLY = "rigid only"  # knows a rigid fix by the beginning of its style
+COUNT = "count"  # acts only in certain steps, so it is compared with fix rigid at the same step
+MOVES = "moves"  # changes velocities, positions or masses of bodies' atoms without informing the fix
+TAKEN = "taken over"  # changes velocities, which bodies adopt
+RIGID_ONLY = "rigid only"  # recognizes a rigid fix by the beginning of its style
 INTEGRATES = "integrates"  # a second fix that integrates time
 BOX = "box"  # changes the box
 
@@ -35,18 +35,18 @@ class Try:
     modify: str = ""
     #: commands that a restart does not repeat
     once: tuple = ()
-    #: the reference, fix rigid, is run in pieces of so many steps (of the longest length), since it
-    #: takes velocities over at the beginning of a run only
+    #: the reference, fix rigid, is run in parts of this number of steps (of the longest length), because it adopts
+    #: velocities only at the beginning of a run
     pieces: int = 0
     #: whether its outputs are compared
     outputs: bool = True
     #: whether a rigid fix is defined before it in the reference, too
     behind: bool = False
-    #: what the difference from the reference may be in any case, where forces jump
+    #: permitted difference from the reference if forces jump
     floor: float = 1e-7
     #: whether a run from a restart file is compared
     restarts: bool = True
-    #: per-atom values have a meaning in their sum only
+    #: only the sum of the per-atom values has a meaning
     sums: bool = False
 
 
@@ -69,12 +69,12 @@ passive, force, chance, count, integrates, box = (
 
 
 def force_or_none(args, none, **words):
-    """A force, and the same fix with arguments that make it none."""
+    """A force, and the same fix with arguments that make the force zero."""
     return force(args, **words) + passive(none)
 
 
 def moves(args="", free=COUNT, kind=MOVES, pieces=0, **words):
-    """On all atoms, and (of another kind) on those only that are in no body."""
+    """On all atoms, and (as another kind) only on atoms outside of bodies."""
     both = _one(kind, args, pieces=pieces, **words)
     return both + (_one(free, args, "free", **words) if free else ())
 
@@ -174,7 +174,7 @@ FIXES = {
         Try(COUNT, "5 1 whole 1234", "free", before=WHOLE),
         Try(COUNT, "5 1 whole 1234 molecule yes", "bodies", before=WHOLE),
     ),
-    # atoms are inserted, removed and moved, so forces jump: with tuned coefficients the errors last for some steps
+    # atoms are inserted, removed and moved, so forces jump; with tuned coefficients the errors last for some steps
     "gcmc": count("10 2 2 4 1234 1.0 -0.5 0.2", group="free", floor=2e-4),
     "bond/break": (Try(COUNT, "5 1 10.0"), Try(COUNT, "5 1 0.51")),
     "bond/create": count("5 4 4 0.5 1"),
@@ -256,7 +256,7 @@ FIXES = {
     },
 }
 
-#: compute styles that differ in nothing but their name
+#: compute styles that differ only in their names
 WITHOUT_ARGUMENTS = """
     ackland/atom com dipole displace/atom fragment/atom gyration hexorder/atom ke ke/atom
     momentum msd/nongauss orientorder/atom pe pe/atom temp temp/com temp/deform temp/rotate

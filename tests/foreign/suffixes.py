@@ -1,4 +1,4 @@
-"""Variants of LAMMPS' styles (`-sf opt` and the like) under fix gear/quat: the motion is that without.
+"""Variants of LAMMPS' styles (`-sf opt` and others) with fix gear/quat: the motion is the same as without the option.
 
 The suffix may change the order of sums, and what the fix can evaluate before step 0.  If the start is
 of another order for that reason, the log has to name the package; the reference then begins alike.
@@ -16,12 +16,12 @@ STEPS = 20
 WATER = ((0.0, 0.0, 0.0), (0.8165, 0.57736, 0.0), (-0.8165, 0.57736, 0.0))
 CHARGES, WATER_MASSES = (-0.8476, 0.4238, 0.4238), (15.9994, 1.008, 1.008)
 EDGE, SPACING = 4, 3.2
-#: takes part in nothing, and keeps the start from evaluating forces
+#: has no effect except that it prevents the start from evaluating forces
 UNFOLLOWED = "fix unfollowed free nve"
 
 
 def water():
-    """Text of a data file: rigid water in a cubic lattice, oriented by chance."""
+    """Text of a data file: rigid water in a cubic lattice, with random orientations."""
     places, turns = np.ndindex(EDGE, EDGE, EDGE), Rotation.random(EDGE**3, random_state=3)
     side, lines = EDGE * SPACING, ["water", "", f"{3 * EDGE**3} atoms", "2 atom types"]
     lines += [f"0 {side} {axis}lo {axis}hi" for axis in "xyz"]
@@ -116,7 +116,7 @@ class VariantVerdict:
 
 
 def outcomes(engine, suffix, ranks, folder):
-    """What became of all scenes that have variants with that suffix, on so many ranks."""
+    """Outcomes of all scenes that have variants with this suffix, on this number of ranks."""
     folder.mkdir(parents=True, exist_ok=True)
     scene.write_files(folder)
     (folder / "data.water").write_text(water())
@@ -132,7 +132,7 @@ def outcomes(engine, suffix, ranks, folder):
 
 
 def start_of(answer):
-    """What the log says of the start, without the name of the fix."""
+    """The message about the start in the log, without the name of the fix."""
     return next((line for line in answer.warnings if "start" in line), "").partition(": ")[2]
 
 

@@ -1,7 +1,7 @@
-"""Keyword temp beside other styles: which degrees of freedom it must have, measured from the motion.
+"""Keyword temp together with other styles: the correct degrees of freedom are measured from the motion.
 
-All atoms are in bodies, and their total momentum is zero at first.  A component of it that is constant
-but for rounding is no degree of freedom, whatever the other style is; any other is one.
+All atoms are in bodies, and their total momentum is zero at first.  A component of the total momentum that is constant
+apart from rounding is not a degree of freedom, for any other style; all other components are degrees of freedom.
 """
 
 import itertools
@@ -20,7 +20,7 @@ OUTPUT = ("thermo_modify norm no",)
 BEGIN = ("delete_atoms group free compress no", "velocity all zero linear")
 #: styles that are thermostats themselves, which the fix refuses
 THERMOSTATS = re.compile(r"temp/.*|langevin")
-#: styles that put atoms into their group: the others act on nothing if it is empty
+#: styles that put atoms into their group; other styles have no effect if the group is empty
 INSERTS = ("deposit", "gcmc")
 #: when it is noted: at the end of the first run and of the second
 MOMENTS = ("middle", "atoms")
@@ -57,7 +57,7 @@ def momenta(atoms, bodies):
 
 
 def constant_directions(before, after, bodies):
-    """Directions in which the total momentum is constant: where bodies have gone, all that are possible."""
+    """Directions in which the total momentum is constant; if bodies were removed, all possible directions."""
     first, last = momenta(before, bodies), momenta(after, bodies)
     if len(first) != len(last):
         return [some for n in range(4) for some in itertools.combinations(range(3), n)]
@@ -95,7 +95,7 @@ def faults(answer, conserves, bodies=Bodies()):
                 .format(*own, *right)
             )
     said = [line for line in map(SAID.search, answer.warnings) if line]
-    same = len(possible) == 1  # the log tells of bodies that have gone in the next run only
+    same = len(possible) == 1  # the log reports removed bodies only in the next run
     if not said or (same and [int(n) for n in said[-1].groups()] != [round(n) for n in own]):
         found.append(f"the log has other degrees of freedom than the vector, {own}")
     if conserves:

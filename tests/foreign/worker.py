@@ -1,4 +1,4 @@
-"""Many scenes in one LAMMPS: what a Worker is asked for.
+"""Many scenes in one LAMMPS: the requests to a Worker.
 
 A job is a list of lines for LAMMPS.  Lines that begin with @ are for this module:
 
@@ -26,7 +26,7 @@ _lmp = None  # the LAMMPS of this process
 
 @dataclass
 class Answer:
-    """What a job has noted under its names, LAMMPS' error or "", and warnings."""
+    """The data that a job has noted, by name, LAMMPS' error or "", and warnings."""
 
     noted: dict = field(default_factory=dict)
     error: str = ""
@@ -39,7 +39,7 @@ class Answer:
 
 
 def is_abort(error):
-    """Whether LAMMPS cannot go on after this error: the other ranks do not know of it."""
+    """Whether LAMMPS cannot continue after this error, because the other ranks are not informed of it."""
     return type(error).__name__ == "MPIAbortException"
 
 
@@ -78,7 +78,7 @@ class Probes:
         ' file {name}.txt format " %.16g"'
     )
     _DUMP = "dump {name} all custom {steps} {name}.txt id {value}"
-    #: form -> command, what is behind the value
+    #: form -> command, text after the value
     FORMS = {
         "scalar": (_TIME, ""),
         "vector": (_TIME, "[*]"),
@@ -134,7 +134,7 @@ class Probes:
 def obey(lmp, job):
     """Runs the lines of a job; returns a dictionary of what it noted, and the error that ended it on all ranks.
 
-    Raises LammpsError on a rank that alone has an error: the others do not know of it, and wait.
+    Raises LammpsError if only one rank has an error, because the other ranks are not informed and wait.
     """
     noted, probes = {}, Probes(lmp)
     try:
@@ -174,9 +174,9 @@ def run_job(job, words, folder, tell):
     global _lmp
     os.chdir(folder)
     _lmp = lmp = open_library(words=words) if _lmp is None else _lmp
-    for name in lmp.available_ids("variable"):  # which clear leaves
+    for name in lmp.available_ids("variable"):  # the command clear does not remove these
         lmp.command(f"variable {name} delete")
-    lmp.command("thermo_modify warn reset")  # or LAMMPS falls silent after a hundred
+    lmp.command("thermo_modify warn reset")  # LAMMPS would stop printing warnings after a hundred
     lmp.command(f"log {LOG}")
     noted, error = obey(lmp, job)
     lmp.command("log none")

@@ -1,10 +1,9 @@
-"""LAMMPS' own unit tests of fix styles (fix-timestep-*.yaml) with rigid bodies of fix gear/quat.
+"""LAMMPS' unit tests of fix styles (fix-timestep-*.yaml) with rigid bodies of fix gear/quat.
 
-The scene is that of LAMMPS' harness: 29 atoms in 5 molecules with all kinds of bonds, 8 steps.  In
-the tests of rigid fixes the rigid fix is replaced; in those of other fixes it is the integrator of
-atoms, fix nve, that gives way to rigid bodies.  Both are compared with fix rigid at small steps; and
-fix rigid at the step of the test has to give the positions that the test lists, or the scene was
-not rebuilt as the harness has it.
+The scene is that of LAMMPS' harness: 29 atoms in 5 molecules with all kinds of bonds, 8 steps.  In the tests of rigid
+fixes the rigid fix is replaced; in the tests of other fixes, rigid bodies replace the integrator of atoms, fix nve.
+Both are compared with fix rigid at small steps; and fix rigid at the step of the test has to give the positions that
+the test lists, or the scene was not rebuilt as the harness has it.
 """
 
 import re

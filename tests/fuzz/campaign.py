@@ -36,13 +36,13 @@ def surroundings():
         subprocess.check_output(["gcc", f"-print-file-name={name}"], text=True).strip()
         for name in ("libasan.so", "libubsan.so")
     ]
-    # Python itself was not built with them, and leaks
+    # Python was not built with sanitizers, and leaks memory
     options = os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0"
     return python_environment(TREE_BUILD, LD_PRELOAD=" ".join(found), ASAN_OPTIONS=options)
 
 
 def run_worker(kind, seed, count, folder):
-    """One process; returns what it printed, or what ended it."""
+    """One process; returns its output, or the cause of its end."""
     last = folder / "last"
     last.write_text("(before the first input)")
     command = [sys.executable, "-m", "fuzz.worker", kind, str(seed), str(count), str(last)]
@@ -61,7 +61,7 @@ def run_worker(kind, seed, count, folder):
 
 
 def run(kind, inputs, folder, seed=0):
-    """Tally of so many inputs of a kind, "arguments" or "infile"; the same ones for the same seed."""
+    """Tally of this number of inputs of a kind, "arguments" or "infile"; the same ones for the same seed."""
     tally, begin = Tally(), time.monotonic()
     for first in range(0, inputs, IN_A_PROCESS):
         found = run_worker(kind, seed + first, min(IN_A_PROCESS, inputs - first), folder)

@@ -28,7 +28,7 @@ def body_line(rng, body):
         arms[:, 2] = 0.0  # flat
     arms -= np.array(masses) @ arms / sum(masses)
     tensor = sum(m * (a @ a * np.eye(3) - np.outer(a, a)) for m, a in zip(masses, arms))
-    tensor = np.where(np.abs(tensor) < 1e-12, 0.0, tensor)  # of a point, or flat
+    tensor = np.where(np.abs(tensor) < 1e-12, 0.0, tensor)  # for a point, or for a flat body
     center = ATOMS[body].mean(axis=0) + [rng.uniform(-0.5, 0.5) for _ in range(3)]
     image = [rng.choice((0, 0, 0, 1, -1)) for _ in range(3)]
     center = center - BOX * np.array(image)
@@ -61,5 +61,5 @@ def make(rng):
 
 
 def draw(rng):
-    """An input: what LAMMPS is told, and the file `bodies`."""
+    """An input: commands for LAMMPS, and the file `bodies`."""
     return f"fix move all gear/quat {rng.choice(STYLES)} infile bodies", make(rng)

@@ -1,4 +1,4 @@
-"""Words that break things, and ways to break a list of words."""
+"""Invalid words, and faults in a list of words."""
 
 NUMBERS = (
     "0 -0 1 -1 2 3 4 5 6 7 8 9 12 13 100 101 1000 +6 -6 06 6. 6.0 .5 5. 1e1 1E-3 1e+2 1e 1e999 -1e999 1e-999 1e308 "
@@ -35,7 +35,7 @@ def cut(rng, word):
 
 
 def mutated(rng, words, pool):
-    """A copy of ``words`` with one fault; ``pool`` has words that belong, though perhaps not there."""
+    """A copy of ``words`` with one fault; ``pool`` contains words that are valid at some position."""
     words = list(words)
     at = rng.randrange(len(words) + 1)
     kind = rng.randrange(7)

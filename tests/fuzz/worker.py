@@ -1,4 +1,4 @@
-"""Feeds inputs to LAMMPS in this process and prints what became of them, as JSON; see campaign.py.
+"""Passes inputs to LAMMPS in this process and prints the outcomes as JSON; see campaign.py.
 
 A crash or a hang ends the process: the input is then in the file that the caller has named.
 """
@@ -45,7 +45,7 @@ class Scene:
             self.lmp.numpy.extract_atom(name)[: len(values)] = values
 
     def stir(self):
-        """An atom comes and goes: LAMMPS asks all fixes that it knows of."""
+        """An atom is created and deleted, so that LAMMPS calls all fixes that it knows."""
         self.lmp.command("create_atoms 1 single 9 9 9")
         self.lmp.command("group extra id 7")
         self.lmp.command("delete_atoms group extra compress no")
@@ -54,14 +54,14 @@ class Scene:
         """Defines the fix; returns LAMMPS' words if it refuses, else an empty string."""
         try:
             self.lmp.command(command)
-        except UnicodeDecodeError:  # LAMMPS cuts characters in two, in messages of any command
+        except UnicodeDecodeError:  # in messages of any command, LAMMPS may cut a character in two
             return "ERROR"
-        except Exception as error:  # what LAMMPS' module raises
+        except Exception as error:  # the exception of LAMMPS' module
             return str(error) or "?"
         return ""
 
     def attempt(self, command, text):
-        """Whether an input is accepted, and what else is wrong."""
+        """Whether an input is accepted, and any fault that was found."""
         Path("bodies").write_text(text, encoding="utf-8", newline="")
         refusal = self.define(command)
         if refusal:
