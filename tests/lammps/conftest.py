@@ -16,7 +16,7 @@ def formulation(request: pytest.FixtureRequest) -> str:
 
 @pytest.fixture
 def fix(formulation: str) -> str:
-    """The words of a fix for molecules in either formulation."""
+    """The words of a fix for molecules in each of the formulations."""
     return f"gear/quat molecule formulation {formulation}"
 
 

@@ -27,7 +27,7 @@ from scenes import last_frame, water_data
 FOLDER = Path(__file__).parent / "restarts"
 STEPS = 20
 
-#: words of the fix, and outputs that only such a fix has
+#: words of the fix, and outputs that exist only with these words
 CASES = {
     "first": ("formulation first", ""),
     "second": ("formulation second", ""),

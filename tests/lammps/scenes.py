@@ -99,8 +99,8 @@ def placed(bodies, velocities=(), kinds=None, molecules=None, **settings) -> str
     return empty_box("\n".join(lines), **settings)
 
 
-# SPC/E; dense enough to migrate and collide, with a smooth cutoff so that rounding errors stay small. The list has all pairs: without the
-# exclusion the sum of a molecule's internal forces would add rounding.
+# SPC/E; dense enough to migrate and collide, with a smooth cutoff so that rounding errors stay small. The list has all
+# pairs: without the exclusion, the internal forces of a molecule would add rounding errors.
 WATER = """
 units {units}
 atom_style full

@@ -52,7 +52,7 @@ PRESET = {"second": f"values 6 {GEAR} c0 velocity", "first": f"values 5 {GEAR} m
 
 @pytest.mark.parametrize("formulation", PRESET)
 def test_the_preset_of_the_paper_is_its_keywords(liquid, formulation):
-    """To the last bit; given keywords take precedence at any position."""
+    """The results agree to the last bit; given keywords take precedence at any position."""
     fix, words = f"formulation {formulation}", PRESET[formulation]
     same = {name: liquid(f"{fix} {more}")[1] for name, more in (("preset", "preset paper"), ("words", words))}
     assert (same["preset"] == same["words"]).all()
@@ -87,8 +87,8 @@ def test_estimates_fall_with_the_power_of_the_step(cage, formulation, values, co
     coarse, fine = (cage(dt, **words) for dt in (0.1, 0.05))
     assert np.log2(coarse / fine) == pytest.approx([values] * 4, abs=within)
     other = cage(0.0505, **words)
-    assert (np.abs(other / fine - 1.01**values) < 0.006 * values).all()  # 1 % is detected
-    assert coarse[0] == coarse[1] and coarse[2] == coarse[3]  # one body: largest is rms
+    assert (np.abs(other / fine - 1.01**values) < 0.006 * values).all()  # a deviation of 1 % is detected
+    assert coarse[0] == coarse[1] and coarse[2] == coarse[3]  # for one body the largest error is the rms error
 
 
 def test_estimates_fall_with_the_number_of_values(cage):
@@ -139,7 +139,7 @@ def test_a_restart_with_another_history_says_so(liquid, lmp, after):
 
 @pytest.mark.parametrize("before, after", [("gear", "tuned"), ("tuned", "gear")])
 def test_histories_go_on_with_the_other_corrector(lmp, liquid, before, after):
-    """A warning names both; with the same corrector there is no message."""
+    """A warning names both correctors; with the same corrector there is no message."""
     _, whole = liquid(f"corrector {before} values 8", steps=40)
     liquid(f"corrector {before} values 8", run="run 20\nwrite_restart half.restart")
     for corrector in (before, after):
@@ -156,7 +156,7 @@ def test_histories_go_on_with_the_other_corrector(lmp, liquid, before, after):
 
 @pytest.mark.parametrize("formulation, values", LADDER)
 def test_values_without_tuned_coefficients_are_refused(lmp_wheel, formulation, values):
-    """So are numbers missing in the list of keywords; with Gear's all are accepted."""
+    """Numbers missing in the list of keywords are refused, too; with Gear's coefficients all numbers are accepted."""
     deck = two_molecules("molecule formulation {} corrector {} values {}", after="run 0")
     named = keywords.table()["values"].tuned[formulation]
     assert lmp_wheel.succeed(deck.format(formulation, "gear", values)).output

@@ -102,7 +102,7 @@ def gas(lmp, words, part, dt=0.005, steps=2000):
 @pytest.mark.parametrize("part", [1 / 50, 1 / 10, 1 / 6, 1 / 4])
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_bodies_have_the_temperature_of_random_forces(lmp_tree, part, formulation):
-    """Also with strong friction; with the weakest, 2 % is three standard errors."""
+    """This is true also with strong friction; with the weakest friction, 2 % is three standard errors."""
     found, result = gas(lmp_tree, f"formulation {formulation}", part)
     assert found == pytest.approx(1.0, abs=0.07 if part > 0.2 else 0.04)
     assert found != pytest.approx(1.12, abs=0.07)
@@ -111,7 +111,7 @@ def test_bodies_have_the_temperature_of_random_forces(lmp_tree, part, formulatio
 
 @pytest.mark.parametrize("words, part, told", [("", 1 / 3, True), ("", 1 / 6, False), ("values 4", 1 / 4, True)])
 def test_random_forces_that_no_number_follows_are_warned_of(lmp_tree, words, part, told):
-    """The part is the one of fix langevin, from the size of its forces."""
+    """The lost part of a momentum is that of fix langevin, from the size of its forces."""
     found, result = gas(lmp_tree, words, part, steps=400)
     warning = re.search(r"forces take ([\d.]+) of a momentum in a step", result.words)
     assert (warning is not None) == told
@@ -146,7 +146,7 @@ def test_the_friction_of_a_thermostat(lmp_tree, data):
 
 @pytest.mark.parametrize("words, dt", [("", 8.0), ("formulation first", 16.0)])
 def test_a_step_too_long_for_any(lmp_tree, data, words, dt):
-    """Formulation second judges vibrations and rotations, formulation first rotations."""
+    """Formulation second judges vibrations and rotations, formulation first only rotations."""
     result = run(lmp_tree, data, words, dt=dt, steps=1)
     step = re.search(r"more than any number of values can follow for long; use a time step of ([\d.]+)", result.stdout)
     assert 1.0 < float(step[1]) < dt
@@ -197,7 +197,8 @@ def test_random_forces_that_come_and_go(lmp_tree, data):
 
 # --- restart files -------------------------------------------------------------------------------
 def continued(lmp, data, words, later="", dt=LONG, before=""):
-    """The end of a run of 40 steps, the end of one that was restarted after 20, and its result."""
+    """The end of a run of 40 steps, the end of a run that was restarted after 20 steps, and the result of the
+    latter."""
     lmp.succeed(water(data, f"gear/quat molecule {words}", dt=dt, steps=20, run="run 20\nrun 20"))
     whole = last_frame(lmp.folder / "poses.dump")
     lmp.succeed(water(data, f"gear/quat molecule {words}", dt=dt, steps=20, run="run 20\nwrite_restart half"))

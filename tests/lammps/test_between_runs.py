@@ -57,8 +57,8 @@ def energies(result, run=-1):
 def test_forces_changed_between_runs(lmp_tree, data, fix):
     """The following motion is the same as if the fix had been defined at that point.
 
-    At a step of 0.25 fs: the switching function of the forces has kinks. At 0.5 fs their errors in every step
-    would exceed the smallest of these changes, since errors from kinks decay more slowly with tuned coefficients.
+    The step is 0.25 fs because the switching function of the forces has kinks. At 0.5 fs the errors from kinks in every
+    step would exceed the smallest of these changes, since errors from kinks decay more slowly with tuned coefficients.
     """
     changes = CHANGES if fix == "second" else {"pair_coeff": CHANGES["pair_coeff"]}
     words = FIXES[fix]
@@ -119,7 +119,7 @@ def test_unchanged_runs_go_on(lmp_tree, data):
 
 
 def test_a_time_step_that_a_run_is_not_set_up_for(lmp_tree, data):
-    """With pre no, too, the fix keeps the step of tolerance."""
+    """The fix keeps the step of tolerance also with pre no."""
     columns = "time f_move[9] f_move[14]"
     text = deck(data, "tolerance 1e-9", run="run 60\n{}\nrun 40 pre no", columns=columns)
     changed = text.replace("\nrun 40", "\ntimestep 8.0\nrun 40")
@@ -159,7 +159,8 @@ OF_TALLIES = {
 
 @pytest.mark.parametrize("name", OF_TALLIES)
 def test_a_field_of_energy_or_pressure(lmp_tree, data, name):
-    """It is available at steps only, so the start has order 2; LAMMPS' requirements for such a field are met."""
+    """The energy is available only at steps, so the start has order 2; LAMMPS' requirements for such a field are
+    fulfilled."""
     field = OF_TALLIES[name] + "\nfix a all addforce v_f 0.0 0.0"
     places = (dict(before=field, after=""), dict(after=field))
     decks = [deck(data, run="run 5", **place) for place in places]
@@ -184,7 +185,7 @@ def test_random_numbers_are_not_drawn(lmp_tree, data):
 
 
 def test_bonds_that_break_are_not_followed(lmp_tree):
-    """An outer node of the start would break them permanently."""
+    """Evaluation at an outer node of the start would break the bonds permanently."""
     bonds = (
         "bond_style quartic\nbond_coeff 1 1200 -0.55 0.25 1.3 34.6878\nspecial_bonds lj 1 1 1\n"
         "create_bonds single/bond 1 1 4"
@@ -204,7 +205,7 @@ def test_bonds_that_break_are_not_followed(lmp_tree):
 
 SWAPS = {
     "center": "set atom 1 mass 3.0\nset atom 2 mass 1.0",
-    # about the center only the moments change
+    # a symmetric change about the center changes only the moments
     "moments": "set atom 1 mass 1.0\nset atom 2*3 mass 2.0",
 }
 ROD = """
@@ -232,7 +233,7 @@ run 1
 @pytest.mark.parametrize("swap", SWAPS)
 @pytest.mark.parametrize("extended", [False, True])
 def test_masses_that_go_from_atom_to_atom(lmp_tree, swap, extended):
-    """The sum is constant; the body has the present masses, as if the fix had been defined then."""
+    """The total mass is constant; the body has the current masses, as if the fix had been defined at that time."""
     style = "sphere" if extended else "hybrid molecular sphere"
     masses = "set atom 1*3 diameter {} mass 1.0\nset atom 1 mass 3.0".format(0.5 if extended else 0.0)
     if swap == "center":

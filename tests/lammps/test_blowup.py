@@ -94,7 +94,7 @@ def test_atoms_on_top_of_each_other(lmp_tree, distance, start, ranks):
 
 
 def test_an_inserted_body(lmp_tree):
-    """It starts with the forces of its first step."""
+    """An inserted body starts with the forces of its first step."""
     (lmp_tree.folder / "molecule.two").write_text(
         "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n"
     )
@@ -132,7 +132,8 @@ def test_too_large_a_step(lmp_tree, values, dt, ranks):
 
 @pytest.mark.parametrize("choices", ["accurate", "paper"])
 def test_coarse_runs_of_today_are_left_alone(lmp_tree, examples, formulation, choices):
-    """Their energy is not conserved, but their bodies are stable: |q|^2 is off by a factor of two in some."""
+    """In these runs the energy is not conserved, but bodies are stable: in some runs |q|^2 is wrong by a factor of
+    two."""
     scene = whole_deck(examples / "case1" / "in.case1")
     for dt in (0.25, 1.0) if choices == "accurate" or formulation == "second" else (0.25,):
         settings = dict(formulation=formulation, choices=choices, dt=dt, out="none")

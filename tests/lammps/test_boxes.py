@@ -55,7 +55,7 @@ dump_modify poses sort id format float %.17g
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_box_may_become_triclinic_between_runs(lmp_tree, ranks):
-    """The same box, and the same motion; all molecules are inside."""
+    """The box and the motion are the same; all molecules are inside."""
     data = water_data(lmp_tree.folder / "data.water", spacing=4.5, shift=2.25)
     ends = []
     for change in ("", f"undump poses\nchange_box all triclinic\n{DUMP}"):

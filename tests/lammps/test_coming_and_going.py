@@ -29,7 +29,8 @@ def ids(lmp):
 
 
 def expect_temperature(thermo, row, molecules):
-    """It corresponds to the fix's kinetic energies with the degrees of freedom of this many molecules."""
+    """The temperature corresponds to the kinetic energies of the fix with the degrees of freedom of this number of
+    molecules."""
 
     def temperature(molecules):
         kinetic = thermo["f_move[1]"][row] + thermo["f_move[2]"][row]
@@ -42,9 +43,10 @@ def expect_temperature(thermo, row, molecules):
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_a_molecule_evaporates(lmp_tree, ranks):
-    """As if it had been deleted between two runs, on any number of ranks, except for the histories.
+    """The motion is as if the molecule had been deleted between two runs, on any number of ranks, except for the
+    histories.
 
-    Within a run they continue across the jump of the forces, with an error that grows with the step.
+    Within a run histories continue across the jump of the forces, with an error that grows with the step.
     """
     commands = evaporating() + show(rows=[5, 26]) + "run {steps}"
     thermo = lmp_tree.succeed(liquid(lmp_tree, commands, dt=0.001), ranks=ranks).thermo[-1]
@@ -74,7 +76,7 @@ run 11
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_rows_of_bodies_that_are_gone_read_as_zeros(lmp_tree, ranks):
-    """In thermo, in variables, in averages and in sums over a column."""
+    """Rows are read in thermo, in variables, in averages and in sums over a column."""
     commands = """
 variable id equal f_move[27][28]
 variable ids equal sum(f_move[28])
@@ -105,7 +107,8 @@ def test_a_broken_body_is_noticed_in_a_run(lmp_tree, ranks, atom):
 
 
 def test_two_bodies_broken_at_once(lmp_tree):
-    """One lost its owner, another one an atom: the total number is consistent, but the error is detected."""
+    """One body lost its owner, and another body lost an atom: the total number is consistent, but the error is
+    detected."""
     for members in (f"id {OXYGEN} {OXYGEN + 4}", f"id {OXYGEN + 1} {OXYGEN + 3}"):
         commands = evaporating(members, "no", number=2) + "run {steps}"
         lmp_tree.refuse(liquid(lmp_tree, commands), "2 of its", ranks=2)
@@ -120,7 +123,7 @@ def test_molecules_deleted_between_runs(lmp, ranks):
     for row in (0, 1):
         expect_temperature(result.thermo[1], row, N - 3)
         assert result.thermo[1]["f_move[24][28]"][row] == 26
-    # nothing was done to the others: the remaining ones keep their histories
+    # the other bodies have not changed, so they keep their histories
     assert "atoms were changed" not in result.stdout
     assert len(ids(lmp)[-1]) == N - 3
 
@@ -176,7 +179,7 @@ def test_all_bodies_may_go(lmp_tree):
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_molecules_are_inserted(lmp, ranks, formulation):
-    """With their own bodies, and the same trajectory on any number of ranks."""
+    """Inserted molecules become bodies, and the trajectory is the same on any number of ranks."""
     commands = INSERT.format(count=3) + show() + "run {steps}"
     # rows 28 to 30 do not exist yet when thermo_style is parsed
     commands += "\nthermo_style custom step f_move[28][28] f_move[30][28] f_move[30][1]\nrun 0"
@@ -218,7 +221,7 @@ def in_field(lmp, dt, steps, bodies=(), force="v_fx v_fy v_fz", after=THROW, hea
 
 
 def insertion_error(lmp, dt, words, steps=None):
-    """Of a molecule that is inserted and then moves in a field for about two units of time.
+    """Error of a molecule that is inserted and then moves in a field for about two units of time.
 
     The exact motion is from a body that exists from the start, with steps of 0.01.
     """
@@ -244,7 +247,7 @@ def test_order_of_the_start_of_an_inserted_body(lmp_tree, formulation, start, or
 
 
 def test_with_a_step_that_follows_the_error(lmp_tree, formulation):
-    """Also from the first step of the inserted body on, for any previous step."""
+    """This is true also from the first step of the inserted body on, for any previous step."""
 
     def error(dt, eps):
         return insertion_error(lmp_tree, dt, f"formulation {formulation} tolerance {eps}", 300)
@@ -300,7 +303,8 @@ FALL = "0.5 -0.3 0.7"  # a constant field
 
 @pytest.mark.parametrize("header", [MASS, ALL])
 def test_a_template_that_states_its_mass(lmp_tree, header):
-    """Center and inertia too, rotated at insertion: as rigid/small with a step ten times smaller."""
+    """Center and inertia are rotated at insertion, too; the motion agrees with rigid/small at a step ten times
+    smaller."""
     said = "template spce gives a mass, center of mass or inertia that differ from its atoms"
 
     def move(header, fix=MOL, dt=0.005, steps=200):
@@ -336,7 +340,8 @@ def test_a_plugin_without_the_header_says_so(lmp_wheel):
 
 # --- velocity ------------------------------------------------------------------------------------
 def test_velocities_given_between_runs(lmp_tree):
-    """Bodies get the momentum and angular momentum of their atoms; the rest is not a rigid motion."""
+    """Bodies adopt the momentum and angular momentum of their atoms; the remaining velocities are not a rigid
+    motion."""
     dump = "write_dump all custom {} id xu yu zu vx vy vz modify sort id format float %.17g\n"
     commands = show(5) + (
         "run 5\nvelocity all create 300.0 4711 mom yes rot no dist gaussian loop geom\n"
@@ -361,7 +366,7 @@ def test_velocities_given_between_runs(lmp_tree):
         close((mass * taken).sum(1), (mass * given).sum(1), 1e-12)
         momenta = ((mass * np.cross(arms, v)).sum(1) for v in (taken, given))
         close(*momenta, 1e-12)
-        assert np.abs(taken - given).max() > 1e-3  # and the rest is lost
+        assert np.abs(taken - given).max() > 1e-3  # and the remaining velocities are lost
 
 
 def test_rows_may_be_asked_for_before_a_body_is_there(lmp_tree):

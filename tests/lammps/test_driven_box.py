@@ -60,7 +60,7 @@ THERMOSTATS = ["", "temp 0.7 0.9 0.8 thermostat separate"]
 SCHEMES = {"values 5": 5, "values 7": 7, "values 9": 9, "values 6 corrector gear": 6, "formulation first values 8": 8}
 
 
-# a flow contained in velocities is not a temperature, so temp refuses it
+# a flow that is part of the velocities is not heat, so temp refuses it
 ORDERED = [
     (name, words)
     for name, (after, _) in {**FOLLOWED, **UNMAPPED}.items()
@@ -71,7 +71,8 @@ ORDERED = [
 
 @pytest.mark.parametrize("name, words", ORDERED)
 def test_orders(lmp_wheel, name, words):
-    """By slope, compared with more values and shorter steps; forces depend on velocities: n - 1."""
+    """Orders from slopes, compared with more values and shorter steps; forces depend on velocities, so the order is n -
+    1."""
     after, tilted = {**FOLLOWED, **UNMAPPED}[name]
     time, steps = 0.4, (0.02, 0.01, 0.005)
 
@@ -87,13 +88,14 @@ def test_orders(lmp_wheel, name, words):
         floor = of[-1] < 2e-11
         slope = np.log2(of[0] / of[1]) if floor else np.log2(of[0] / of[2]) / 2
         assert slope > values - 1.3, (values, of)
-    if "0.3" in after or "0.5" in after:  # 1 % of the rate
+    if "0.3" in after or "0.5" in after:  # an error of 1 % of the rate is detected
         assert errors[-1] > 1e3 * errors[5]
 
 
 @pytest.mark.parametrize("name", ["compressed", "wiggle", "sheared", "not remapped", "flow"])
 def test_fix_rigid_tends_to_the_same_motion(lmp_wheel, name):
-    """Its box lags by one step, an error of first order: extrapolated from the full and half step."""
+    """With fix rigid the box lags by one step, an error of first order; the result is extrapolated from the full and
+    half step."""
     after, tilted = {**FOLLOWED, **UNMAPPED}[name]
     decks = [driven(after, tilted)]
     decks += [driven(after, tilted, "rigid/small molecule", dt, round(0.4 / dt)) for dt in (0.001, 0.0005)]
@@ -151,7 +153,7 @@ REMAPPED = {**FOLLOWED, **{name: box[:2] for name, box in BOXES.items() if box[2
 
 @pytest.mark.parametrize("name", REMAPPED)
 def test_shapes_stay_exact(lmp_wheel, name):
-    """Also in the frame at the end of a step, after the box has moved."""
+    """This is true also in the frame at the end of a step, after the box has moved."""
     after, tilted = REMAPPED[name]
     pose = "write_dump all custom begin.dump id xu yu zu modify sort id format float %.17g\n"
     run = f"{pose}run 401\nwrite_dump all custom done.dump id xu yu zu modify sort id format float %.17g"
@@ -269,7 +271,7 @@ def test_energy_changes_by_the_work_of_the_box(lmp_wheel, name):
 
 
 def test_a_restart_in_the_middle_of_a_deformation_goes_on(lmp_wheel):
-    """To rounding; so do two runs."""
+    """The results agree to rounding, also those of two runs."""
     for name, words in (("compressed", ""), ("sheared", "temp 0.7 0.7 0.8"), ("wiggle", "formulation first")):
         after, tilted = FOLLOWED[name]
         span = "start 0 stop 200"

@@ -36,7 +36,7 @@ def test_on_is_counted_in_the_functions_named_for_it(results):
         assert results.fix(effect.on, effect.base) > 10, name
         if effect.own:
             own = results.per_body(effect.on, lambda profile, effect=effect: profile.of(effect.own))
-            # with inlining, few instructions are counted as theirs
+            # because of inlining, few instructions are assigned to these functions
             assert 5 < own < results.fix(effect.on), name
 
 

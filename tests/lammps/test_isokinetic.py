@@ -34,7 +34,7 @@ def cluster(words, dt=0.004, time=0.8, run=None, every=None, style=""):
 
 @pytest.mark.parametrize("mode", MODES)
 def test_kinetic_energy_and_heat_to_the_order_of_the_method(lmp_tree, mode):
-    """Including the first steps: the start uses the constraint."""
+    """This is true also in the first steps, because the start includes the constraint."""
     values, steps = 6, (0.008, 0.004, 0.002)
     words = f"isokinetic {mode} rescale no values {values}"
     decks = [cluster(words, dt) for dt in steps]
@@ -73,7 +73,7 @@ def test_multipliers_take_what_the_forces_do(lmp_tree):
 
 
 def test_points_have_one_multiplier(lmp_tree):
-    """Bodies of one atom: there is no rotation, and none is required."""
+    """Bodies of one atom have no rotation, and none is required."""
     deck = cluster("isokinetic separate", 0.002)
     for old, new in (
         ("exclude molecule/intra all", "every 1"),

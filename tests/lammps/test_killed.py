@@ -1,4 +1,4 @@
-"""A run that loses a process: its files are complete, and the run can be continued without any effect."""
+"""A run that loses a process: its files are complete, and the continued run is the same as an uninterrupted run."""
 
 import os
 import signal
@@ -67,7 +67,7 @@ def test_a_killed_rank(lmp_tree, examples, formulation, rank, delay):
     )
     assert result.returncode != 0
 
-    # LAMMPS refuses an incomplete file; then it is the one that was being written
+    # LAMMPS refuses an incomplete file; this can only be the file that was being written
     for name in newest_first(folder):
         scene = restarted(case1.scene.replace("run ${steps}", f"run {AGAIN}"), name)
         again = lmp_tree.run(scene, case1.variables, ranks=2)

@@ -78,7 +78,7 @@ def difference(one, other):
     return max(moved[:, 1:4].max() / BOX, moved[:, 4:7].max() / np.abs(one[:, 4:7]).max())
 
 
-# additions of a run to the plain one
+# additions to the plain run
 WAYS = {
     "plain": dict(),
     "newton off": dict(newton="off"),
@@ -107,7 +107,7 @@ RANKS = {
 
 
 def to_repeat(way):
-    """The run (ranks, way) that has the same trajectory as this way, for any number of ranks."""
+    """The run (ranks, way) with the same trajectory as this way, for any number of ranks."""
     if "tolerance" in way:
         # rounding determines the last digits of every step: the same number of ranks, small bodies only
         return 4, "wide tolerance"
@@ -187,7 +187,7 @@ def test_single_and_group(lmp):
 
 
 def test_restarts_on_any_number_of_ranks(lmp_tree):
-    """To the last bit on the same number of ranks; to rounding on others."""
+    """Results agree to the last bit on the same number of ranks, and to rounding on others."""
     data = slab_data(lmp_tree.folder / "data.slab")
     halves = f"run {STEPS // 2}\nwrite_restart {{name}}.restart\nrun {STEPS // 2}"
     whole = {}

@@ -24,7 +24,8 @@ def test_several_runs_are_one_run(case1):
 
 
 def test_a_rerun_in_between(case1):
-    """It finds the energies of the dumped poses, and bodies ignore it with reinit no or begin anew from its last frame."""
+    """Rerun finds the energies of the dumped poses; with reinit no bodies ignore it, otherwise they start again from
+    its last frame."""
     dump = "dump d body custom 100 frames id x y z vx vy vz\ndump_modify d sort id format float %.17g\nrun 1000\nundump d"
     whole = end(case1.run("run 1000\nrun 1000"))
     for reinit in ("no", "yes"):
@@ -45,7 +46,7 @@ def test_the_comparisons_can_fail(case1):
 
 
 def test_a_restart_written_before_the_first_step(case1):
-    """It contains the start; see test_restart_matrix.py for all others."""
+    """This restart file contains the start; test_restart_matrix.py tests all others."""
     whole = case1.run("run 1000")
     case1.run("run 0\nwrite_restart new")
     assert (end(case1.run("run 1000", "new")) == end(whole)).all()
@@ -62,7 +63,7 @@ def test_a_restart_with_the_other_formulation_says_so(case1):
 
 @pytest.mark.parametrize("factor", [2.0, 0.5, 10.0])
 def test_a_change_of_the_time_step(case1, factor):
-    """The run is as accurate as one with the coarser of the two steps from the beginning."""
+    """The run is as accurate as a run with the coarser of the two steps from the beginning."""
     steps = round(1000 / factor)
     exact = end(case1.run("run 10000", dt=0.004))  # to t = 40
 
@@ -77,7 +78,7 @@ def test_a_change_of_the_time_step(case1, factor):
 
 
 def test_a_longer_step_and_back(case1):
-    """The error is at most twice that of a run in which the fix is defined anew for the short step."""
+    """The error is at most twice the error of a run in which the fix is defined again for the short step."""
     anew = "unfix move\nfix move body gear/quat molecule formulation ${formulation}\nfix_modify move energy yes"
     exact = end(case1.run("run 15000", dt=0.004))  # to t = 60
     kept, again = (
@@ -143,7 +144,8 @@ def test_unfix_and_back(case1):
 
 
 def test_a_step_shorter_than_half_begins_anew(case1):
-    """Not at one half, nor if the step is restored before it is used, nor if a start would not be full."""
+    """Histories are not restarted at one half, nor if the step is restored before it is used, nor if a start would not
+    be full."""
     said = "less than half of the previous one, histories start anew"
     shorter = case1.run("run 100\ntimestep 0.008\nrun 100")
     assert shorter.stdout.count(said) == 1

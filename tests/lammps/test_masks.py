@@ -226,7 +226,7 @@ def test_what_holds_a_body_is_outside_of_it(lmp_tree):
 
 
 def test_degrees_of_freedom_are_those_of_fix_rigid(lmp_tree, data):
-    """Masks are not accounted for: the user subtracts them, see the manual."""
+    """Temperature computes do not account for masks; the user subtracts the degrees of freedom (see the manual)."""
     fixes = ("gear/quat molecule", f"gear/quat molecule {SOME}", f"rigid molecule {SOME}")
     decks = one_after_the_other(water(data, fix, run="run 0") for fix in fixes)
     temperatures = [table["Temp"][0] for table in lmp_tree.succeed(decks).thermo]

@@ -46,7 +46,7 @@ class Box:
         return np.loadtxt(lines.splitlines())[:, 1:]
 
     def difference(self, one, other, atoms=slice(None)):
-        """Of positions and velocities, relative to the change of the velocities by forces."""
+        """Deviation of positions and velocities, relative to the change of the velocities by forces."""
         one, other = (self.end(name)[atoms] for name in (one, other))
         changed = np.abs(one[:, 4:7] - self.start()[one[:, 0].astype(int) - 1]).max()
         travelled = np.abs(one[:, 4:7]).max()
@@ -100,7 +100,7 @@ FORCES = {
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("kind", FORCES)
 def test_every_force_counts(box, kind, ranks):
-    """As with fix rigid/nve/small at a tiny step; if one of these forces is 1 % stronger, it is detected.
+    """The motion agrees with fix rigid/nve/small at a tiny step; a force that is 1 % stronger is detected.
 
     Plain cutoffs are jumps of the forces, whose errors decay over some tens of steps with tuned coefficients.
     """
@@ -134,7 +134,7 @@ DRAG = {  # rate in 1/fs, and its command
 
 @pytest.mark.parametrize("kind", DRAG)
 def test_a_drag_on_every_site_stops_the_whole(box, fix, kind):
-    """In proportion to masses: internal forces cancel, and the momentum decays exponentially."""
+    """The friction is proportional to masses, so internal forces cancel and the momentum decays exponentially."""
     rate, drag = DRAG[kind]
     box.run(box.deck("end", fix, dt=0.1, steps=300, before=drag))
     before, after = MASS @ box.start(), MASS @ box.end("end")[:, 4:7]
@@ -196,7 +196,7 @@ set group others charge 0.0
 
 @pytest.fixture(params=SOLVENT)
 def solution(request, box):
-    """Half of the molecules rigid, the others flexible or single atoms that fix nve moves."""
+    """Half of the molecules are rigid; the others are flexible, or single atoms, and moved by fix nve."""
     if request.param == "flexible":
         box.data = with_bonds(box.data)
     box.before = SOLVENT[request.param] + "\nfix others others nve\n"
@@ -205,7 +205,8 @@ def solution(request, box):
 
 @pytest.mark.parametrize("ranks", [1, 4])
 def test_bodies_and_solvent_move_each_other(solution, ranks):
-    """At a tiny step as with fix rigid/nve/small; without the forces between them the motion differs."""
+    """The motion agrees with fix rigid/nve/small at a tiny step; without the forces between the two kinds it
+    differs."""
     apart = "neigh_modify exclude group bodies others\n"
     common = dict(group="bodies", before=solution.before)
     solution.run(
@@ -302,7 +303,8 @@ def test_two_fixes_are_one(box, fix, ranks):
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("beside", [OURS + "first", RIGID])
 def test_another_rigid_fix_beside(box, beside, ranks):
-    """Of the other formulation, or fix rigid/nve/small: as if rigid/nve/small moved all."""
+    """The other fix has the other formulation, or is rigid/nve/small: the motion is as if rigid/nve/small moved all
+    bodies."""
     fix = OURS + "second"
     two = f"{BODIES}fix rest others {beside}\n"
     # another fix gear/quat is followed, since both start together; other fixes are not

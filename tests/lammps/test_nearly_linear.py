@@ -36,7 +36,7 @@ def test_refused_with_the_smallest_moment(lmp_wheel, bend, smallest):
         assert moment == pytest.approx(smallest, rel=1e-4)
         assert largest == pytest.approx(43.06, rel=1e-3)
         assert omega == pytest.approx(2.7, rel=1e-3) and radians == pytest.approx(omega)
-    # it runs at the step that the message names
+    # the deck runs at the step in the message
     lmp_wheel.succeed(carbon_dioxide(bend, 2.7, dt=step, steps=2000))
 
 
@@ -57,7 +57,7 @@ def test_a_share_of_the_energy_that_will_be_too_much_is_warned_of(lmp_wheel, n, 
 
 
 def test_an_infile_makes_it_linear(lmp_wheel):
-    """As the message suggests."""
+    """The remedy in the message works."""
     mass, inertia = 2 * O + C, 2 * O * LENGTH**2
     line = f"1\n1 {mass} 0 {C * 0.02 / mass} 0 0 {inertia} {inertia} 0 0 0 0 0 0 0 0 0.1 0 0 0\n"
     (lmp_wheel.folder / "bodies").write_text(line)
@@ -65,7 +65,7 @@ def test_an_infile_makes_it_linear(lmp_wheel):
 
 
 def test_the_blow_up_names_the_moment(lmp_wheel):
-    """A torque accelerates its rotation in the run."""
+    """A torque accelerates the rotation during the run."""
     push = "group carbon type 2\nvariable push atom 1.0*step\nfix push carbon addforce 0 0 v_push"
     deck = carbon_dioxide(0.02, 0.0, steps=1000, after=push)
     message = "turns about the axis of its smallest moment of inertia, 0.0034932, the largest being"
@@ -73,6 +73,6 @@ def test_the_blow_up_names_the_moment(lmp_wheel):
 
 
 def test_a_run_of_no_steps_is_not_refused(lmp_wheel):
-    """It can be used to print energies, or to scale velocities, after which the next run may be stable."""
+    """Run 0 can be used to print energies, or to scale velocities, so that the next run may be stable."""
     deck = carbon_dioxide(0.02, 2.7, run="run 0\nvelocity all scale 1.0\nrun 20")
     assert len(lmp_wheel.succeed(deck).thermo) == 2

@@ -77,7 +77,7 @@ def test_thermostats_by_scaling_reach_the_bodies(lmp_wheel, formulation):
     for table in map(energies, result.thermo):
         bodies = table["f_move[1]"] + table["f_move[2]"]
         late = slice(len(bodies) // 2, None)
-        # except for the last scaling
+        # except in the last scaling
         assert bodies[late] == pytest.approx(table["KinEng"][late], rel=0.02)
         assert 200 < table["Temp"][late].mean() < 420  # without: 1200
         taken = table["TotEng"][0] - table["TotEng"][-1]
@@ -98,7 +98,7 @@ run 0
 
 
 def test_momentum_reaches_the_bodies(lmp_wheel):
-    """Also on several ranks; bodies match their atoms after the change."""
+    """This is true also on several ranks; bodies match their atoms after the change."""
     ends = []
     for ranks in (1, 4):
         deck = molecules(lmp_wheel, MOMENTUM, steps=35, run="run 35\n" + SHOW_MOMENTUM)
@@ -248,7 +248,7 @@ def test_a_change_that_no_table_knows_is_told(lmp_wheel):
 
 @pytest.mark.parametrize("words, told", [("", False), (" disable", True)])
 def test_gravity_that_is_disabled(lmp_wheel, words, told):
-    """As rigid/small requires: bodies would not fall."""
+    """The keyword that rigid/small requires: with it, bodies would not fall."""
     warning = "fix pull (gravity) exerts no force on bodies; if it has the keyword disable"
     after = f"fix pull all gravity 1.0 vector 0 0 -1{words}\nrun 3"
     assert (warning in lmp_wheel.succeed(two_molecules(after=after)).words) == told
@@ -294,7 +294,7 @@ FRICTION = re.compile(r"forces take ([\d.]+) of a momentum in a step.*?use a tim
 
 @pytest.mark.parametrize("words", ["", "corrector gear", "values 9", "formulation first", "formulation first values 4"])
 def test_friction_that_a_step_cannot_take_is_warned_of(lmp_wheel, words):
-    """With the part lost in a step, and a step that is short enough."""
+    """The message states the part lost in a step, and a step that is short enough."""
 
     def told(part, dt=0.01):
         after = f"timestep {dt}\nfix drag all viscous {part / 0.01}\nrun 1"
@@ -357,7 +357,8 @@ run 3000
 
 
 def test_few_values_suit_srd(lmp_wheel):
-    """Collisions are forces of a single step: with a long history they cause heating, with a short one not."""
+    """Collisions are forces in a single step: they cause heating with a long history, and no heating with a short
+    history."""
     lines = []
     for n, (x, y) in enumerate([(2, 2), (5.7, 2.1), (2.1, 5.8), (6, 6)]):
         lines += [f"create_atoms 1 single {x} {y} 0", f"create_atoms 1 single {x + 1} {y} 0"]

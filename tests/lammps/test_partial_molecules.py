@@ -39,7 +39,7 @@ def test_the_advice(lmp_tree, style):
 
 
 def test_one_molecule(lmp_tree):
-    """One of many, whose atoms are on several ranks."""
+    """One of many molecules, whose atoms are on several ranks."""
     text = deck(lmp_tree.folder, "molecule", before="group oxygens include molecule\n")
     text = text.replace("fix move oxygens", "group one id 41\ngroup most subtract all one\nfix move most")
     found = WARNING.findall(lmp_tree.succeed(text, ranks=4).words)
@@ -48,6 +48,6 @@ def test_one_molecule(lmp_tree):
 
 @pytest.mark.parametrize("rest", ["nve", "gear/quat molecule"])
 def test_another_fix_moves_the_rest(lmp_tree, rest):
-    """Flexible chains on rigid cores, and rigid parts connected by other bonds, are intended."""
+    """No warning for flexible chains on rigid cores or for rigid parts connected by other bonds, which are intended."""
     result = lmp_tree.succeed(deck(lmp_tree.folder, "molecule", after=f"fix rest hydrogens {rest}\n"))
     assert not WARNING.search(result.words)

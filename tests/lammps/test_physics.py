@@ -46,7 +46,7 @@ def test_a_linear_body_turns_about_two_axes(lmp_tree, fix, sites):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_atoms_in_no_body_are_left_alone(lmp, ranks):
-    """Outside the fix group, and inside it but in none of the listed groups: not a bit changes."""
+    """Atoms outside of the fix group, or in it but in none of the listed groups, do not change in any bit."""
     before = "group left id 1 2 3\ngroup some id 1 2 3 4 5"
     after = """
 dump d all custom 50 all.dump id x y z vx vy vz
@@ -201,7 +201,8 @@ def test_a_true_infile_changes_nothing(lmp_tree, fix, image):
 
 
 def test_an_infile_serves_fix_rigid_too(lmp_tree, fix):
-    """Another inertia than the sites have: the same motion as fix rigid with the same file."""
+    """With an inertia that differs from the inertia of the sites, the motion agrees with fix rigid with the same
+    file."""
     tilted = SITES @ np.array([[1.0, 0.2, 0], [0, 1, 0.3], [0.1, 0, 1]])
     body_file(lmp_tree.folder / "other", tilted, np.cross(OMEGA, tilted))
     plain, stated = (infile_run(lmp_tree, fix + more) for more in ("", " infile other"))

@@ -163,7 +163,7 @@ COUPLES = {"xyz": (0, 1, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 
 @pytest.mark.parametrize("couple", ["none", *COUPLES])
 def test_coupled_edges_are_the_same(lmp_wheel, couple):
-    """To the last digits, for any corner of the box; others differ."""
+    """Results agree to the last digits for any corner of the box; other fixed points differ."""
     result, _ = ends(lmp_wheel, [pressed(f"aniso 0.3 0.3 1.0 temp 0.7 0.7 0.8 couple {couple}", run="run 200")])
     edges = np.array([result.thermo[0][c] for c in EDGES])
     assert largest_change(result.thermo[0]) < 1e-6
@@ -237,7 +237,7 @@ def test_lengths_within_a_molecule_do_not_change(lmp_wheel, data, words, toleran
 
 
 def test_the_total_momentum_stays_zero(lmp_wheel):
-    """In a long run with chains, whose friction could amplify rounding; and a drift velocity is constant."""
+    """This is tested in a long run with chains, whose friction could amplify rounding; a drift velocity is constant."""
     momentum = "\n".join(f"variable p{c} equal mass(all)*vcm(all,{c})" for c in "xyz")
     columns = momentum + "\nthermo_style custom step econserve v_px v_py v_pz\nthermo_modify norm no format float %.17g\n"
     drift = "velocity all set 0.3 -0.2 0.1 sum yes"
@@ -252,7 +252,7 @@ def test_the_total_momentum_stays_zero(lmp_wheel):
 
 
 def test_a_crystal_bears_a_negative_pressure(lmp_wheel):
-    """Each component has its target, averaged over a run; unequal ones too."""
+    """The average of each component over a run is its target, also for unequal targets."""
     pair = "pair_style morse 2.5\npair_coeff * * 0.0 2.0 1.0 2.5\npair_coeff 1 1 2.0 4.0 1.0 2.5\npair_modify shift yes"
     crystal = """lattice fcc 1.4
 region box block 0 3 0 3 0 3
@@ -283,7 +283,7 @@ run 40000"""
     mean, error = rows.mean(axis=0), rows.std(axis=0) / np.sqrt(len(rows))
     print(mean, error)
     assert (np.abs(mean[:3] - targets) < 4 * error[:3]).all() and error[:3].max() < 0.02
-    # for comparison, their mean
+    # for comparison, the mean of the components
     assert np.abs(mean[:3] + 0.4).max() > 10 * error[:3].max()
     mass = (3 * 107 + 3) * 0.05 / 3
     # ten parts of one component are too few for its error

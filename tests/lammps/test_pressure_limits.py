@@ -40,7 +40,7 @@ def crystal(words, dt, run, pdamp=1.0, last=TARGET, thermo=1000):
 
 
 def volume_frequency(lmp):
-    """Of small oscillations, from the zero crossings in a run with short steps."""
+    """Frequency of small oscillations, from the zero crossings in a run with short steps."""
     dt = 0.001
     table = lmp.succeed(crystal("values 7", dt, "run 2000", thermo=1)).thermo[0]
     strain = np.log(table["Volume"])
@@ -127,7 +127,7 @@ def test_a_box_that_becomes_too_stiff(lmp_wheel, words):
     ((_, measured),) = new_start(step, ratio * dt)
     assert float(radians) == pytest.approx(float(measured) / ratio, rel=0.035, abs=0.01)
     assert float(radians) == pytest.approx(0.6 * fastest, rel=0.02)
-    # half way to this step there was no reason
+    # half way to this step a warning was not justified
     assert not new_start(int(step) // 2, dt)
     # the pressure does not rise that far
     half = TARGET + 0.4 * (last - TARGET) * int(step) / steps

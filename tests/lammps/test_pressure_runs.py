@@ -118,7 +118,7 @@ def test_what_a_restart_file_does_not_fit(lmp_tree):
 
 @pytest.mark.parametrize("ranks", [2, 4])
 def test_ranks_agree(lmp_tree, ranks):
-    """To 1e-10 over 100 steps, with edges and conserved energy."""
+    """Motion, edges and conserved energy agree to 1e-10 over 100 steps."""
     decks = [pressed(f"formulation {f} {mode}") for f in FORMULATIONS for mode in MODES.values()]
     alone, one = ends(lmp_tree, decks)
     result, many = ends(lmp_tree, decks, ranks)
@@ -151,7 +151,7 @@ def test_molecules_many_periods_off(lmp_tree, mode):
 
 @pytest.mark.parametrize("mode", ["NPH", "NPT", "ramps"])
 def test_ways_to_run_the_same_steps(lmp_tree, mode):
-    """In parts, with `every`, `pre no`, `run 0` in between, also during a ramp."""
+    """Runs in parts, with `every`, `pre no` or `run 0` in between, also during a ramp."""
     parts = {
         "one": f"run 100 {SPAN}",
         "two": f"run 40 {SPAN}\nrun 60 {SPAN}",
@@ -226,7 +226,7 @@ def test_change_box_between_runs(lmp_tree):
 
 
 def test_a_fix_that_comes_again_has_lost_its_rate(lmp_tree):
-    """Without unfix the box keeps moving; a new fix starts with a box at rest."""
+    """Without unfix the box continues to move; a new fix starts with a box at rest."""
     fix = f"unfix move\nfix move all gear/quat molecule {MODES['NPT']}\n"
     result, _ = ends(lmp_tree, [pressed(MODES["NPT"], run=f"run 50\n{fix}run 50")])
     before, after = result.thermo

@@ -85,7 +85,7 @@ FLIPPED = "x 0.3 0.3 1.0 y 0.3 0.3 1.0 z 0.3 0.3 1.0 xy -2.0 -2.0 1.0 xz 0 0 1.0
 
 
 def sheared_far(lmp, ranks, processors="1 1 *", steps=100):
-    """With a flip and without: the result, and the final atoms."""
+    """The result and the final atoms, with and without a flip."""
     strained = np.array([[1.0, 0.585, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     trimers(lmp.folder / "data.strained", change=strained)
     settings = dict(pair=REPULSIVE, box="box tilt large\nread_data data.strained", processors=processors, thermo=1)
@@ -135,7 +135,7 @@ def test_restart_and_ranks(lmp_tree):
 
 
 def test_a_liquid_that_flows_under_shear_ends_the_run(lmp_wheel):
-    """Its box is sheared more and more, with flips, and its mean pressure deviates from the target."""
+    """The box of a liquid is sheared more and more, with flips, and its mean pressure deviates from the target."""
     words = "x 1.0 1.0 0.5 y 1.0 1.0 0.5 z 1.0 1.0 0.5 xy 0.4 0.4 0.5 xz 0 0 0.5 yz 0 0 0.5 temp 2.0 2.0 0.2"
     deck = tilted(words, steps=20000, pair=REPULSIVE)
     result = lmp_wheel.refuse(deck, "it was sheared by 2 times its height in this run, because the targets")

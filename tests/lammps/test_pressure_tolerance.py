@@ -68,7 +68,8 @@ def test_errors_follow_the_tolerance(lmp_wheel, mode, measure):
 
 @pytest.mark.parametrize("mode", MODES)
 def test_repeated_steps_leave_nothing_behind(lmp_wheel, mode):
-    """Runs that repeat steps, the first of them far too long, end like short ones without a repetition."""
+    """Runs that repeat steps, with a first step that is far too long, end like runs with short steps and no
+    repetition."""
     words = MODES[mode]
     decks = [fixed(words), *(controlled(words, eps, "energy", first=0.1) for eps in EPS)]
     result, frames = ends(lmp_wheel, decks)

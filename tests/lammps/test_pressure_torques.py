@@ -48,7 +48,7 @@ def test_orders(lmp_tree, mode):
 
 
 def test_shear_is_refused(lmp_tree):
-    """But not for points whose atom style has torques, nor for a tilted box with constant angles."""
+    """Shear is refused, but not for points whose atom style has torques, nor for a tilted box with constant angles."""
     words = f"{TARGET} {TARGET} 2.0 ptemp 0.4"
     said = "shear components of the pressure require atoms that are points"
     lmp_tree.refuse(dipoles_deck("tri " + words, tilt=0.1), said)

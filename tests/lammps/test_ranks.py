@@ -28,7 +28,7 @@ def test_1_2_and_4_ranks_over_1000_steps(lmp_tree, data, fix):
     for ranks in (2, 4):
         assert difference(one, run(lmp_tree, data, ranks, **settings)[0]) < 1e-12
 
-    # bodies did collide and migrate, and a difference of 1 % would have been detected
+    # bodies have collided and migrated, and a difference of 1 % would have been detected
     assert table["Temp"][-1] > 2.0 * table["Temp"][0]
     assert difference(one, one * 1.01) > 5e-3
 

@@ -35,7 +35,7 @@ if spoil:
 instance.command("run 20")
 print(json.dumps(result | {"then": state()}))
 """
-#: not the velocities of rigid bodies, which the first run makes of them
+#: velocities that are not rigid motions; the first run makes them rigid
 VELOCITIES = "velocity all create 300.0 4711 loop geom\n"
 # an error, its remedy, the message
 REFUSED = {
@@ -63,7 +63,7 @@ def straight(tmp_path_factory):
 
 @pytest.mark.tree
 def test_a_refused_thermostat_has_not_changed(tmp_path):
-    """Its damping time is too short for a long step, far from the target."""
+    """The damping time is too short for a long step, far from the target."""
     fix = "gear/quat molecule values 9 temp 30 30 20 tchain 1"
     water_data(tmp_path / "data.water")
     straight = run(tmp_path, fix=fix)

@@ -134,7 +134,7 @@ def test_a_group_alone_is_remapped(lmp_tree):
 
 
 def test_velocities_may_change_as_well(lmp_tree):
-    """They are adopted from the atoms, as after any other command."""
+    """Velocities are adopted from the atoms, as after any other command."""
     doubled = "variable v{0} atom 2*v{0}\nset group all v{0} v_v{0}\n"
     change = CHANGES["scale"] + "\n" + "".join(doubled.format(k) for k in "xyz")
     before, after, result = before_and_after(lmp_tree, change)
@@ -144,7 +144,7 @@ def test_velocities_may_change_as_well(lmp_tree):
 
 
 def test_energies_are_those_of_the_new_places(lmp_tree):
-    """Along a trajectory as if the fix had been defined there."""
+    """The trajectory is as if the fix had been defined after the change."""
     data = water_data(lmp_tree.folder / "data.water")
     written = "write_data written nocoeff\nrun 20"
     change = "change_box all x scale 1.05 y scale 1.04 z scale 1.01 remap"
@@ -168,7 +168,7 @@ def test_a_data_file_right_after_the_change(lmp_tree):
 
 
 def test_bodies_of_one_atom_and_rods_along_an_axis(lmp_tree):
-    """A remap does not stretch them, and its effect on others is still detected."""
+    """A remap does not stretch these bodies, and its effect on other bodies is still detected."""
     bodies = [[(1, 2, 3)], [(3, 0, 0), (3, 0, 1.5)], [(-4, 0, 0), (-3, 0, 0)]]
     bodies = [np.array(body, float) for body in bodies]
     change = "change_box all x scale 1.1 y scale 0.9 remap"
@@ -203,7 +203,7 @@ UNLIKE = "change_box all x final -2 12 units box\nchange_box all x scale 1.2 rem
 
 
 def test_a_deformation_that_is_no_remap_is_told(lmp_tree):
-    """And the advice helps."""
+    """The advice in the message helps."""
     inside = water_data(lmp_tree.folder / "inside.water", shift=1.65)
     _, _, result = before_and_after(lmp_tree, UNLIKE, data=inside)
     assert result.output.count(DEFORMED) == 1 and REMAPPED.format(27) not in result.output

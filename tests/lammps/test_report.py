@@ -203,7 +203,7 @@ def test_pairs_that_move_nothing_are_found_and_mended(lmp_tree, examples, fix, r
 
 
 def test_pairs_of_atoms_that_no_fix_moves(lmp_tree, examples):
-    """Each kind is reported separately; atoms moved by another fix are not among them."""
+    """Each kind is reported separately; atoms moved by another fix are not counted."""
 
     def kinds(exclude, mover=""):
         deck = cage(examples, f"neigh_modify exclude {exclude}")
@@ -398,7 +398,7 @@ def test_pairs_within_bodies_that_interact_are_named_and_mended(lmp_tree, words,
 
 
 def test_few_pairs_within_bodies_are_named(lmp_tree):
-    """Far less than 1 % of all pairs."""
+    """The warning appears even for far less than 1 % of all pairs."""
     rest = "group one molecule 9\ngroup rest subtract all one\nfix nve rest nve\n"
     rest += "neigh_modify exclude molecule/intra rest\n"
     result = lmp_tree.succeed(dioxide(lmp_tree).replace("fix move all", f"{rest}fix move one"))

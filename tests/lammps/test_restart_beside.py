@@ -1,4 +1,4 @@
-"""A restart beside other fixes that store data of atoms in the same file, and files of other releases.
+"""A restart together with other fixes that store data of atoms in the same file, and files of other releases.
 
 In a restart file the data of an atom are one block after another, one for each fix; a fix skips the
 blocks before its own by the number at the beginning of each.
@@ -9,7 +9,7 @@ import struct
 import pytest
 from scenes import restarted, water
 
-# One fix each that stores numbers of atoms: springs, initial positions, marks and velocities.
+# Fixes that each store numbers of atoms: springs, initial positions, marks and velocities.
 KEEPERS = """
 fix spring all spring/self 0.5
 fix_modify spring energy yes

@@ -1,4 +1,4 @@
-"""Bodies of a restart file and of the command: the same ones continue, others are made again."""
+"""Bodies of a restart file and of the command: equal bodies continue, others are created again."""
 
 import numpy as np
 import pytest
@@ -64,7 +64,7 @@ comm_modify cutoff 9.8
     ],
 )
 def test_other_bodies_begin_anew(halves, fix, group, ranks):
-    """As if there were no fix of that ID in the file."""
+    """The run is as if the file contained no fix of that ID."""
     halves.write()
     found, said = halves.read(fix, ranks, OTHERS, group=group)
     right, silent = halves.read(fix, ranks, OTHERS, name="other", group=group)
@@ -74,7 +74,7 @@ def test_other_bodies_begin_anew(halves, fix, group, ranks):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_smaller_group_moves_its_bodies_only(halves, ranks):
-    """The others do not move, which the histories do not contain: they start anew."""
+    """The other molecules do not move, which histories do not contain, so the histories are restarted."""
     halves.write()
     found, said = halves.read("gear/quat molecule", ranks, OTHERS, group="few")
     assert WARNING not in said and START in said
@@ -97,7 +97,7 @@ GO = "group gone molecule {}\ndelete_atoms group gone compress no\n"
 @pytest.mark.parametrize("gone", [5, 1])
 @pytest.mark.parametrize("style", ["molecule", "custom i_number"])
 def test_bodies_that_are_left_go_on(lmp_tree, style, gone, ranks):
-    """As if the others had been removed between two runs; they are too far away to have an effect."""
+    """The run is as if the other bodies had been removed between two runs; they are too far away to have an effect."""
     halves = Halves(lmp_tree, 8.0)
     mark = NUMBERED.format(set="set group all i_number v_number")
     whole = halves.write(f"gear/quat {style}", before=mark, between=GO.format(gone))
@@ -108,7 +108,7 @@ def test_bodies_that_are_left_go_on(lmp_tree, style, gone, ranks):
 
 
 def test_a_mask_counts_the_bodies_of_the_command(halves):
-    """Body 2 of the remaining ones keeps its velocity."""
+    """Body 2 of the remaining bodies keeps its velocity."""
     halves.write()
     free, _ = halves.read("gear/quat molecule", before=GO.format(1))
     held, said = halves.read("gear/quat molecule force 2 off off off", before=GO.format(1))

@@ -71,7 +71,7 @@ def reading_decks(scene, before, after, **settings):
             rest = f"restart {PERIOD} {end}.restart.*\n{rest}"
         yield restarted(deck_of(scene, words, rest, end, **settings), file)
         if before == after == 1:
-            # must be detected: a missing history, a step 1 % longer
+            # errors that must be detected: a missing history, a step 1 % longer
             lost = deck_of(scene, words, rest, f"{end}-lost").replace(" move", " other")
             yield restarted(lost.replace("f_move", "f_other"), file)
             yield restarted(deck_of(scene, words, rest, f"{end}-longer", stretch=1.01), file)
@@ -126,13 +126,13 @@ def test_a_restart_goes_on_as_the_run_that_wrote_it(runs, name, before, after, w
 
 @pytest.mark.parametrize("scene", ["case1", "case3"])
 def test_two_ranks_with_the_body_on_one_of_them(lmp_tree, scene):
-    """No migration and no change in the order of sums: not a digit differs from the whole run."""
+    """Without migration or a change in the order of sums, not a single digit differs from the whole run."""
     run_all(lmp_tree, writing_decks(scene, 2, grid="2 1 1"), 2)
     run_all(lmp_tree, reading_decks(scene, 2, 2, grid="2 1 1"), 2)
     for name, writer in product(WORDS, WRITERS):
         whole, wrote, again = f"{name}@2", f"{name}@2-{writer}", f"{name}@2-{writer}@2"
         assert every_digit(lmp_tree.folder, whole, wrote, again)
-    assert not every_digit(lmp_tree.folder, "first-6@2", "first-8@2")  # digits are significant
+    assert not every_digit(lmp_tree.folder, "first-6@2", "first-8@2")  # the digits are significant
 
 
 @pytest.mark.parametrize("writer", WRITERS)

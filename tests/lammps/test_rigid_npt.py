@@ -1,5 +1,5 @@
-"""LAMMPS' own barostat for rigid bodies has the defects reported in doc/upstream/rigid_npt. None of these tests passes
-with a LAMMPS without the defects, so we will notice a correction."""
+"""LAMMPS' barostat for rigid bodies has the defects reported in doc/upstream/rigid_npt. These tests fail with a LAMMPS
+without the defects, so we will notice a correction."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_energy_drifts_and_the_barostat_is_too_cold(lmp):
     assert abs(constant["drift"][0]) < 2000 and constant["kinetic"] == [0]
     found = run(lmp, task="barostat", **{**DUMBBELLS, "pressure": "aniso 1 1 0.5"})
     assert found["drift"][0] > 20000
-    assert 0.4 < found["kinetic"][0] < 0.85  # 1 is right
+    assert 0.4 < found["kinetic"][0] < 0.85  # 1 is the correct value
 
 
 def test_the_deck_of_water(lmp):

@@ -11,7 +11,7 @@ AGAIN = "run 0\nrun 0 start 0 stop 100\nrun 0"
 
 
 def ends_of(lmp, runs, words, ranks=1, **settings):
-    """The final atoms of each, and the tables; runs: the commands between fix and END."""
+    """The final atoms of each run, and the tables; runs: the commands between fix and END."""
     names = [f"end{n}" for n in range(len(runs))]
     decks = [cluster(words, every=10, run=f"{run}\n{END.format(n)}", **settings) for run, n in zip(runs, names)]
     result = lmp.succeed(one_after_the_other(decks), ranks=ranks)
@@ -61,7 +61,7 @@ def test_a_restart_behind_it(lmp_tree):
 
 
 def test_what_was_there_for_a_look_only(lmp_tree):
-    """A field, another target: removed before the next step they have changed nothing."""
+    """A field or another target that is removed before the next step has changed nothing."""
     field = "fix pull all addforce 0 0 1\nrun 0\nunfix pull\n"
     runs = [f"run 40\n{look}run 60" for look in ("", field)]
     ends, result = ends_of(lmp_tree, runs, f"{TEMP} thermostat separate")
@@ -72,7 +72,7 @@ def test_what_was_there_for_a_look_only(lmp_tree):
 
 
 def test_what_came_for_good_is_noticed_behind_it(lmp_tree):
-    """A step starts again after a change that only `run 0` has used, as without it."""
+    """After a change that only `run 0` has used, a step starts as without this change."""
     runs = [f"run 40\nfix pull all addforce 0 0 1\n{look}run 60" for look in ("", "run 0\n")]
     ends, result = ends_of(lmp_tree, runs, TEMP)
     assert ends[0] == ends[1]

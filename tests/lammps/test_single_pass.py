@@ -9,7 +9,7 @@ WARNED = re.compile(r"with passes 1 and (\d+) tuned values rotations are unstabl
 
 
 def change(result):
-    """Of the total energy in the run."""
+    """Largest change of the total energy in the run."""
     first, *_, last = result.thermo[-1]["TotEng"]
     return abs(last - first)
 
@@ -20,7 +20,7 @@ def told(result):
 
 @pytest.mark.parametrize("words", ["values 9", "values 7", "values 11", "values 9 project yes", "values 7 project yes"])
 def test_unstable_numbers_are_warned_of(lmp_wheel, data, words):
-    """The run is lost, or its energy changes much more than with the keywords of the message."""
+    """The run fails, or its energy changes much more than with the keywords of the message."""
     result = lmp_wheel.run(water(data, f"gear/quat molecule {words} passes 1", dt=1.0, steps=1500, thermo=1500))
     assert told(result) == [re.search(r"values (\d+)", words)[1]]
     stable = lmp_wheel.succeed(water(data, f"gear/quat molecule {words} passes 2", dt=1.0, steps=1500, thermo=1500))

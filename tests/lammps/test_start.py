@@ -54,12 +54,12 @@ EXTERNAL = {
 @pytest.mark.parametrize("name", EXTERNAL)
 @pytest.mark.parametrize("place", ["before", "after"])
 def test_full_order_with_external_forces(lmp_tree, formulation, name, place):
-    """Fixes defined before and after ours: the start includes both."""
+    """The start includes fixes defined before and after ours."""
     assert order(lmp_tree, f"formulation {formulation}", **{place: EXTERNAL[name]}) > 4.5
 
 
 def test_order_without_external_forces(lmp_tree, formulation):
-    """Full with the default start, one with the paper's."""
+    """The order is full with the default start, and one with the start of the paper."""
     fix = f"formulation {formulation}"
     assert order(lmp_tree, fix) > 4.5
     assert order(lmp_tree, f"{fix} start zero") == pytest.approx(1.0, abs=0.3)
@@ -117,7 +117,7 @@ fix_modify s energy yes
     ids=["observers", "another time"],
 )
 def test_the_trajectory_after_the_start_is_the_same(lmp_tree, settings):
-    """A first run without steps, thermo, dumps, the time: none of these change the start."""
+    """A first run without steps, thermo output, dumps and the time do not change the start."""
     _, plain = field(lmp_tree, 50, 0.01)
     _, watched = field(lmp_tree, 50, 0.01, **settings)
     assert (plain == watched).all()
@@ -221,7 +221,7 @@ def test_water_with_kspace(lmp_tree, data, ranks):
 
 @pytest.mark.parametrize("start", ["bootstrap", "zero"])
 def test_forces_that_are_no_numbers_do_not_pass_for_converged(lmp_tree, start):
-    """A force that is infinite except at the very start: the start reduces its order with a message."""
+    """With a force that is infinite except at the start, the order of the start is reduced, with a message."""
     after = """
 group first id 1
 variable wall atom exp(1000*(abs(x)>1e-9))*(abs(x)>1e-9)
@@ -251,7 +251,7 @@ PAIRS = {
 
 @pytest.mark.parametrize("name", PAIRS)
 def test_two_fixes_start_together(lmp_tree, name):
-    """With full order; if both are alike, with the same result as one fix with all bodies."""
+    """Both fixes start with full order; if they are alike, the result is the same as with one fix for all bodies."""
     first, second, orders = PAIRS[name]
 
     def run(n, dt):
@@ -281,7 +281,7 @@ def test_a_fix_that_is_defined_anew_beside_another(lmp_tree, ranks):
 
 
 def test_a_fix_that_goes(lmp_tree):
-    """Its bodies stop, which is not contained in the derivatives of the forces on the others."""
+    """The bodies of the deleted fix stop, which the derivatives of the forces on other bodies do not contain."""
     after = "timestep 0.02\nfix_modify move energy yes\nthermo 10\nrun 20\nunfix other\nrun 20\n"
     result, _ = two_fixes(lmp_tree, 10, 0.02, after=after)
     assert "Fix gear/quat move: other fixes move atoms than in the last steps" in result.stdout

@@ -121,7 +121,7 @@ LIQUIDS = {
         coefficients="pair_coeff * * 1 1",
     ),
 }
-#: steps that are too long, from immediately refused ones to steps that become unstable in the run
+#: steps that are too long, from steps that are refused at once to steps that become unstable in the run
 TOO_LONG = {
     "water": (100, 7),
     "co2": (300, 60),

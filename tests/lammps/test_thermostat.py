@@ -20,7 +20,7 @@ def order(steps, errors):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_econserve_to_the_order_of_the_method(lmp_tree, formulation, kind):
-    """With a target that moves, including the first steps: the start uses the chains."""
+    """Order with a moving target, including the first steps, because the start includes the chains."""
     values, steps = (6, (0.008, 0.004, 0.002)) if formulation == "first" else (7, (0.016, 0.008, 0.004))
     words = f"formulation {formulation} values {values} temp 0.4 0.8 0.3 thermostat {kind}"
     decks = [cluster(words, dt) for dt in steps]
@@ -76,8 +76,8 @@ def test_what_chains_take_is_what_friction_does(lmp_tree, formulation):
 
 
 def test_the_trajectory_that_rigid_nvt_approaches(lmp_tree, formulation):
-    """With the same degrees of freedom: its chains include the total momentum, as ours do if forces on it
-    do not add up to zero.  They are of first order in the step, so two steps are extrapolated."""
+    """The degrees of freedom are the same: the chains of rigid/nvt include the total momentum, as ours do if forces do
+    not add up to zero.  Those chains are of first order in the step, so two steps are extrapolated."""
     field = dict(after="fix field all addforce 0.02 0.01 -0.03", columns="")
     words = f"formulation {formulation} values 8 temp 0.4 0.8 0.3 thermostat separate tchain 3"
 
@@ -246,7 +246,7 @@ def test_another_thermostat_after_a_restart_begins_anew(lmp_tree):
 
 
 def test_a_damping_time_that_is_too_short(lmp_tree):
-    """With tolerance no step is longer than a tenth of it."""
+    """With tolerance no step is longer than a tenth of the damping time."""
     for words, warned in (("0.03", True), ("0.05", False), ("0.03 tolerance 1e-6", False)):
         result = run(lmp_tree, [cluster(f"temp 0.5 0.5 {words}", run="run 1")])
         assert ("is less than 10 time steps" in result.output + result.log) == warned

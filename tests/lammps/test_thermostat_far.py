@@ -73,7 +73,7 @@ def test_any_length_and_few_steps_of_damping(lmp_tree, gas, formulation, length)
 
 
 def test_the_order_is_that_of_the_method(lmp_tree, gas):
-    """For a stiff chain from the second run on: the first run begins with its transient."""
+    """For a stiff chain this is tested from the second run on, because the first run begins with its transient."""
     errors = []
     for dt in (0.04, 0.02):
         steps = round(1.6 / dt)
@@ -150,7 +150,7 @@ def test_a_friction_that_is_too_strong_is_refused_and_the_advice_holds(lmp_tree,
 
 
 def test_a_friction_that_becomes_strong_is_warned_of(lmp_tree, gas):
-    """Before the run it is unknown: the heat comes from overlaps."""
+    """Before the run this is unknown, because the heat comes from overlaps."""
     words, warning = "values 7 temp 1.0 1.0 {} tchain 1", "of the limit of the method"
     for damp, count in ((0.03, 1), (0.3, 0)):
         deck = overlapping(gas(words.format(damp), soft=300.0, dt=0.002, run="run 200"))

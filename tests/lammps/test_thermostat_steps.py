@@ -111,7 +111,7 @@ def test_a_restart_at_times_of_output_bit_for_bit(lmp_tree):
 
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_ranks_agree(lmp_tree, formulation):
-    """At the same times, since rounding changes the steps."""
+    """Results are compared at the same times, because rounding changes the steps."""
     fix = f"gear/quat molecule formulation {formulation} temp 300 300 20 tolerance 1e-12"
     deck = water(water_data(lmp_tree.folder / "data"), fix, dt=0.5, steps=120)
     deck = deck.replace("fix_modify move energy yes", "")
@@ -119,7 +119,7 @@ def test_ranks_agree(lmp_tree, formulation):
 
 
 def test_another_target_starts_anew(lmp_tree, formulation):
-    """Between runs; the step continues."""
+    """A change between runs; the step continues."""
     fix = f"gear/quat molecule formulation {formulation} temp 0.9 0.9 0.3 tolerance 1e-9"
     run = f"run 100\nunfix move\nfix move all {fix}\nrun 100"
     cold = changing(f"formulation {formulation} {TEMP}", "1e-9", f"run 100\nwrite_restart cold\n{run}")
@@ -195,7 +195,7 @@ def test_a_rotation_that_is_almost_zero_grows_as_it_should(lmp_tree, formulation
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_cold_rotation_is_warned_of_once(lmp_tree, kind):
-    """With a single chain it stays cold."""
+    """With a single chain the rotation stays cold."""
     words, run = f"thermostat {kind}", "run {}\nrun 100"
     shown = dict(columns="")
     said = "the rotational kinetic energy of the bodies was below 1 % of its target for 10 damping times"
@@ -258,7 +258,7 @@ def test_what_is_conserved_when_a_body_comes(lmp_tree, formulation):
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_molecules_come_and_go(lmp_tree, ranks):
-    """Their degrees of freedom are updated, on any number of ranks."""
+    """Degrees of freedom are updated, on any number of ranks."""
     show = f"{COMMON}thermo_style custom step f_move[1] f_move[2] f_move[10] f_move[11] f_move[13] v_common\n"
     commands = evaporating() + INSERT.format(count=3).replace("0 5 4711", "0 7 4711")
     commands += f"{show}thermo_modify lost error format float %.17g\nthermo 1\nrun 20"

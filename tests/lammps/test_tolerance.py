@@ -95,7 +95,7 @@ def test_limits_of_the_step(lmp_tree):
 
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_a_restart_goes_on_bit_for_bit(lmp_tree, ranks):
-    """Also where the step is smallest; the timestep command of the script changes nothing.
+    """This is true also where the step is smallest; the timestep command of the script changes nothing.
 
     With the restart command LAMMPS builds neighbor lists at that step, as it does when it reads the
     file: the owner rank of an atom, and the order in which its forces are added, are then the same.
@@ -125,7 +125,7 @@ def test_a_restart_goes_on_bit_for_bit(lmp_tree, ranks):
 
 
 def test_ranks_agree_to_rounding(lmp_tree):
-    """The step amplifies rounding: it depends on high differences."""
+    """The step depends on high differences, which amplify rounding."""
     deck = "processors 1 * 1\n" + case1(steps=100, tolerance=1e-8)
     one, two = (tables(lmp_tree.succeed(deck, ranks=ranks))[0] for ranks in (1, 2))
     for column in ("Time", "c_centre[1]", "c_centre[2]", "c_centre[3]", "v_total"):
@@ -144,7 +144,7 @@ variable speed equal vcm(free,x)
 
 @pytest.mark.parametrize("place", ["fix move body", "# --- the outputs"])
 def test_other_integrators_follow(lmp_tree, place):
-    """Under a constant force velocity Verlet is exact for any steps, if it is notified of each in time."""
+    """Under a constant force velocity Verlet is exact for any steps, if it is notified of each step in time."""
     deck = case1(steps=300, more=COLUMNS + " v_place v_speed", dt=0.05)
     (run,) = tables(lmp_tree.succeed(deck.replace(place, FALL + place)))
     t, x, v = run["Time"], run["v_place"], run["v_speed"]
@@ -273,7 +273,7 @@ def test_the_first_step_is_within_the_limits(lmp_tree, words, shortest, longest,
 
 @pytest.mark.parametrize("bound", ["dtmax", "every/time"])
 def test_a_time_that_stands_still_is_refused(lmp_tree, bound):
-    """After time zero, where no step is too short to change the time."""
+    """Tested after time zero, because at time zero no step is too short to change the time."""
     again = "unfix move\nfix move all gear/quat molecule tolerance 1e-8 {} {}\nrun 10"
     deck = meeting(1e-8, "lj/charmm/coul/charmm 4.0 6.0", f"run 10\n{again}")
     assert "stand still" not in lmp_tree.succeed(deck.format(bound, 1e-9)).output

@@ -198,7 +198,7 @@ thermo 1
 
 @pytest.mark.parametrize("words", ["1e-9 length {0}", "1e-8 energy {1}"])
 def test_two_atoms_fly_alike_in_all_units(lmp_tree, words):
-    """Eps in units of sigma or of the depth is the same number in all of LAMMPS' units."""
+    """In units of sigma or of the depth, eps is the same number in all of LAMMPS' unit styles."""
     decks = [argon(units, words.format(*ARGON[units]), skin=0.6) for units in ARGON]
     decks.append(argon("lj", words.split()[0] + " " + words.split()[1], skin=0.6))
     runs = tables(lmp_tree.succeed(one_after_the_other(decks)))
@@ -269,7 +269,7 @@ def test_bodies_that_come_into_the_way(lmp_tree):
 
 @pytest.mark.parametrize("words", ["1e-12", "1e-9 energy"])
 def test_ranks_agree(lmp_tree, words):
-    """At the same time, since rounding changes the steps."""
+    """Results are compared at the same time, because rounding changes the steps."""
     data = water_data(lmp_tree.folder / "data")
     deck = water(data, f"gear/quat molecule tolerance {words}", dt=0.5, steps=120)
     agree_on_ranks(lmp_tree, deck)
@@ -294,7 +294,7 @@ def test_a_tolerance_far_below_rounding(lmp_tree):
 
 
 def test_a_tolerance_that_anything_meets(lmp_tree):
-    """Then only the limit of the motion determines the step, and bodies still repel each other."""
+    """Only the limit of the motion determines the step, and bodies still repel each other."""
     (run,) = tables(lmp_tree.succeed(scene("1e30", until=8.0)))
     assert run["PotEng"].min() < -0.5 and run[REPEATED][-1] == 0 and run["Time"][-1] >= 8.0
     assert run[NEXT].max() < 0.25 * 0.3 / 2.0 * 1.5  # a quarter of the skin at a speed of 2

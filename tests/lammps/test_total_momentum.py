@@ -1,6 +1,6 @@
 """Keyword temp: the total momentum is not heat in directions in which it is constant.
 
-These directions are measured, so other fixes count by their effect.
+These directions are measured, so only the effect of other fixes matters.
 """
 
 import re
@@ -259,7 +259,7 @@ def test_it_sets_in_while_the_step_changes(lmp_tree):
 
 
 def test_a_wall_that_is_left_still_counts(lmp_tree):
-    """Between contacts the momentum is constant, and still heat: a second run and a restart continue."""
+    """Between contacts the momentum is constant but still counts as heat: a second run and a restart continue."""
     settings = dict(after="fix wall all wall/harmonic zlo -3.2 100.0 0.0 1.0\n", every=1)
     settings["columns"] = "f_wall f_wall[1]"
     run = f"run 200\nwrite_restart half\nrun 100\n{END.format('halves')}"
@@ -315,7 +315,7 @@ def test_a_common_motion_changes_nothing(lmp_tree, formulation, kind):
 
 
 def test_momentum_left_by_langevin(lmp_tree):
-    """It is constant, and neither counts nor disturbs."""
+    """The common momentum is constant, does not count as heat, and changes nothing else."""
     before = "fix old all gear/quat molecule values 4\nfix bath all langevin 1 1 0.1 4711\nrun 100\n"
     before += "unfix bath\nunfix old"
     deck = dumbbells(lmp_tree, before=before, every=1, run="run 200")
@@ -346,7 +346,7 @@ def test_bodies_that_only_move_together_are_cold(lmp_tree):
 
 
 def test_a_single_body(lmp_tree):
-    """Alone it has no heat; a spring acts on it in the second step, and heats it."""
+    """A single body has no heat; a spring acts on it in the second step, and heats it."""
     alone = dict(bodies=[[(0.3, 0.1, 0.2)]], exclude="", time=0.2, columns="f_move[10] f_move[9]")
     decks = [cluster(TEMP, **alone), cluster(TEMP, after="fix it all spring/self 1.0\n", **alone)]
     decks = [deck.replace("velocity all create 0.6 4711 loop geom", "velocity all set 1 0.5 0.2") for deck in decks]

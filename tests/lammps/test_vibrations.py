@@ -39,7 +39,8 @@ def condense(lmp, dt, run, words=COLD, ranks=1):
 
 
 def test_faster_vibrations_are_warned_of(lmp_wheel):
-    """Once in several runs, with a step that is short enough; a new start measures the same vibrations."""
+    """There is one warning in several runs, with a step that is short enough; a new start measures the same
+    vibrations."""
     result = condense(lmp_wheel, 0.02, "run 1000\nrun 2000 every 500 NULL\nrun 0" + AGAIN)
     first, later = map(float, BEGINS.findall(result.stdout))
     ((step, edge),) = TOO_FAST.findall(result.words)

@@ -64,7 +64,8 @@ def flux(lmp, fix, dt, steps, ranks=1):
 
 
 def test_heat_flux_is_that_of_fix_rigid_small(lmp_tree):
-    """Its virial is computed from differences of velocities: twice the step, twice the error."""
+    """The virial of rigid/small is computed from differences of velocities, so its error is proportional to the
+    step."""
     ours, across = (flux(lmp_tree, "gear/quat molecule", 0.02, 50, ranks) for ranks in (1, 4))
     assert across == pytest.approx(ours, rel=1e-9)
     coarse, fine = (
