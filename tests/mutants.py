@@ -2,8 +2,8 @@
 
     tests/run mutants [--number N] [--seed N]
 
-changes the sources of this checkout, which has to be clean, and restores them: use a work tree of its own.  The answer
-is a line for each change, with the test that noticed it.
+changes the sources of this checkout, which has to be clean, and restores them: use a work tree of its own.  The output
+is a line for each change, with the test that detected it.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ CHANGES = (
     (r"\[0\]", "[1]"),
     (r"\[2\]", "[1]"),
 )
-#: lines with messages, comments, loops over pointers and sizes of arrays are left alone
+#: lines with messages, comments, loops over pointers and sizes of arrays are not changed
 LEFT_OUT = re.compile(r"[\"'#]|//|^ *[/*]|\bfor \(|static_assert|sizeof|FLERR|size_t|begin\(\)|operator|int .*\[\d\]")
 
 
 def candidates() -> list[tuple[Path, int, str]]:
-    """File, number of a line and that line changed, for everything that can be."""
+    """File, line number and changed line, for every possible change."""
     found = []
     for path in sorted([*SOURCES.glob("*.h"), *SOURCES.glob("*.cpp")]):
         comment = False
@@ -55,14 +55,14 @@ def passes(*command: object, **settings: object) -> tuple[bool, str]:
 
 
 def unit_tests(header: Path) -> list[str]:
-    """Programs of the kernel's tests, those first that name the header."""
+    """Programs of the kernel's tests; programs that name the header come first."""
     tests = sorted((ROOT / "tests" / "unit").glob("test_*.cpp"))
     word = header.name.removeprefix("gear_quat_").removesuffix(".h")
     return [path.stem for path in sorted(tests, key=lambda path: (word not in path.stem, header.name not in path.read_text()))]
 
 
 def noticed_by(path: Path) -> str:
-    """The first test that fails, "" if none does; "-" for code that no compiler takes."""
+    """The first test that fails, "" if no test fails; "-" for code that does not compile."""
     if path.suffix == ".h":
         for name in unit_tests(path):
             was = (UNIT / name).stat().st_mtime_ns if (UNIT / name).exists() else 0
@@ -84,7 +84,7 @@ def noticed_by(path: Path) -> str:
 
 
 def main() -> int:
-    """How many changes nobody noticed."""
+    """The number of changes that no test detected."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--number", type=int, default=30)
     parser.add_argument("--seed", type=int, default=1)

@@ -1,8 +1,8 @@
-"""The decks of doc/upstream/rigid_npt, which show defects of LAMMPS' own barostat for rigid bodies.
+"""The decks of doc/upstream/rigid_npt, which show defects of LAMMPS' barostat for rigid bodies.
 
 ``doc/upstream/check`` runs all of them and writes decks and numbers into the reports beside them;
-tests/lammps/test_rigid_npt.py asserts that each defect is seen.  A deck is a scene (``water``, ``dumbbells``,
-``atoms``) and what is done with it, so that each report holds one script that needs no other file.
+tests/lammps/test_rigid_npt.py asserts that each defect is visible.  A deck is a scene (``water``, ``dumbbells``,
+``atoms``) and commands, so that each report contains one script that needs no other file.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def results(log: str) -> dict[str, list[float]]:
 
 
 def run(lmp: Lammps, scene: str, task: str, **variables: object) -> dict[str, list[float]]:
-    """Results of a deck, which must come to its end."""
+    """Results of a deck, which must run to its end."""
     # `print "result ..."` is echoed as well, but with a command before it
     return results(lmp.succeed(deck(scene, task), variables=variables, timeout=3000).log)
 

@@ -126,7 +126,7 @@ class Lammps:
 
         surroundings = {**own_environment(), **self.environment, **(environment or {})}
         out, err = self.folder / f"out.run{number}", self.folder / f"err.run{number}"
-        # files, not pipes: a child that outlives its parent cannot keep us waiting
+        # files instead of pipes, so that a child that outlives its parent does not delay us
         with out.open("w") as stdout, err.open("w") as stderr:
             try:
                 with started(command, where, surroundings, stdout, stderr) as process:
@@ -249,7 +249,8 @@ def python_environment(build: Path | None = None, **more: str) -> dict[str, str]
 
 
 def run_python(code: str, folder: Path | None = None, build: Path | None = None, told: str | None = None) -> str:
-    """What a program prints that imports lammps, see python_environment; it gets a text, and has to come to its end."""
+    """The output of a program that imports lammps (see python_environment); it gets a text as input, and must run to
+    its end."""
     command, environment = [sys.executable, "-c", code], python_environment(build)
     done = subprocess.run(command, cwd=folder, env=environment, input=told, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr

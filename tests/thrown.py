@@ -1,4 +1,4 @@
-"""The smallest scene with a body, for tests of how GEARQUAT got into a LAMMPS.
+"""The smallest scene with a body, for tests of the ways to install GEARQUAT in LAMMPS.
 
 No package of LAMMPS is needed.
 """
@@ -35,6 +35,6 @@ run 20
 
 
 def assert_thrown(result: Result) -> None:
-    """The run went well, and the body is where its velocity takes it."""
+    """The run has succeeded, and the body has moved according to its velocity."""
     assert result.returncode == 0, result.output
     assert result.thermo[-1]["v_x"][-1] == pytest.approx(0.25 + 0.1 * 0.2, rel=1e-12)

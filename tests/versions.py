@@ -80,7 +80,7 @@ def main() -> int:
     print(found, file=sys.stderr)
     counts = [count(rows, row, part) or (0, 0, 0) for row in present for part in PARTS]
     total = [sum(column) for column in zip(*counts)]
-    print(*total)  # passed failed skipped, for tests/run
+    print(*total)  # passed, failed and skipped tests, for tests/run
     if arguments.publish:
         if total[1] or total[2]:
             print("not published: not all tests passed", file=sys.stderr)

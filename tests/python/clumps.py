@@ -1,7 +1,7 @@
 """A deck with three bodies that was not written for the trials, and changes of it."""
 
-# Three bodies of three sites in free space, in the style of LAMMPS' own examples of fix rigid, with
-# what such decks are made of: an include, a loop, an if, outputs, no atom map, more runs than one.
+# Three bodies of three sites in free space, in the style of LAMMPS' own examples of fix rigid, with the features of
+# such decks: an include, a loop, an if, outputs, no atom map, and several runs.
 DECK = """
 variable style index rigid
 variable soft index 0
@@ -52,7 +52,7 @@ create_atoms 1 single 2.8 0.5 1.5
 """
 
 
-#: changes that let fix gear/quat stand in the deck
+#: changes with which the deck contains fix gear/quat
 FOR_GEAR = {"atom_style atomic": "atom_style atomic\natom_modify map yes", " c_kinetic": ""}
 FOR_GEAR |= {"compute kinetic all erotate/rigid 1": ""}
 FIX = "fix 1 all ${style} group 3 clump1 clump2 clump3"

@@ -54,7 +54,7 @@ SIGMA, WELL = 3.405e-10, 119.8
 
 
 def write_argon(folder, style):
-    """Path of the deck of two atoms of argon in units ``style``, with the numbers that it has in units lj."""
+    """Path of the deck of two atoms of argon in units ``style``, with the same reduced numbers as in units lj."""
     units, number = UNITS[style], "{:.17g}".format
     length, energy = SIGMA / (units.angstrom * 1e-10), WELL * units.boltzmann
     # 39.948 u in the mass unit of the style, from its energy, length and time

@@ -13,7 +13,7 @@ from benchmarks.engine.decks import deck
 
 @pytest.fixture
 def results():
-    """Results of ``benchmarks/run cases`` as the paper tells them."""
+    """Results of ``benchmarks/run cases`` as claimed in the paper."""
     return made_up_results()
 
 

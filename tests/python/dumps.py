@@ -10,7 +10,8 @@ COLUMNS = "id mol type mass xu yu zu vx vy vz"
 
 
 class Motion:
-    """Bodies that move straight and turn evenly about a fixed axis in space; all arrays over bodies.
+    """Bodies that move along straight lines and rotate uniformly about a fixed axis in space; all arrays are over
+    bodies.
 
     ``shape`` (n, 3) of the sites from the center of mass, ``of`` (n,) and ``masses`` (n,).
     """

@@ -1,4 +1,4 @@
-"""The paper's scene once more in mpmath, 30 digits: for the reference package's tests."""
+"""An independent version of the paper's scene in mpmath, with 30 digits, for the tests of the reference package."""
 
 import itertools
 

@@ -1,4 +1,4 @@
-"""The hand-written pages, as tests read them."""
+"""Texts of the hand-written pages for tests."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ def _subject(line: str) -> list[str]:
 def edited(script: str, block: str) -> str:
     """A script with the lines of a block.
 
-    A line replaces the one of the same command (and ID, of those that have one); others come before
-    the ``run``, or at the end if the block has had its own ``run`` before them.
+    A line replaces the line with the same command (and ID, if there is one); other lines come before the ``run``, or at
+    the end if they follow a ``run`` of the block.
     """
     lines, ran = script.splitlines(), False
     for line in block.splitlines():

@@ -1,4 +1,4 @@
-"""The paper's two predictor-correctors, written down a second time in plain numpy.
+"""The two predictor-correctors of the paper, implemented a second time in plain numpy.
 
 Exactly as the paper ran them: zero start, nothing projected, every formula as it stands (Eqs. 5 to 18
 as corrected), so that |q| wanders off 1 and the matrix of Eq. 8 is not quite a rotation.  Then the
@@ -45,7 +45,7 @@ def quaternion_of(turn):
 
 
 class PaperGear:
-    """One body moved as the paper did, its body axes chosen by ``turn``."""
+    """One body that moves as in the paper, with body axes chosen by ``turn``."""
 
     def __init__(self, kind, case, h, turn, predicted_momentum=True):
         problem = paper_problem(case, kind, np.float64)

@@ -2,7 +2,8 @@
 
 from running import EXAMPLES
 
-# Molecules begin on a lattice at 0.997 g/cm3, turned at random; a thermostat takes away what overlaps release.
+# Molecules begin on a lattice at 0.997 g/cm3, with random orientations; a thermostat removes the energy of the
+# overlaps.
 DECK = """\
 units real
 atom_style full

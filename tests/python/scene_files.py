@@ -1,4 +1,4 @@
-"""Data files of the scenes, as tests read them."""
+"""Contents of the data files of the scenes for tests."""
 
 import numpy as np
 

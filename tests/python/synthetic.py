@@ -9,7 +9,7 @@ from benchmarks.studies.cases import plan
 
 
 def make(time, center, potential=None, translation=None, rotation=None):
-    """Series at ``time`` (n,) with the given columns; what is not given is zero or constant."""
+    """Series at ``time`` (n,) with the given columns; other columns are zero or constant."""
     n = len(time)
 
     def column(values, default=0.0):
@@ -28,7 +28,7 @@ PARTS = {1: 1000.0, 2: 270.0, 3: 800.0}
 
 
 def made_up(run):
-    """Series of a run of ``benchmarks/run cases`` as the paper tells it."""
+    """Series of a run of ``benchmarks/run cases`` as claimed in the paper."""
     time = np.arange(run.end + 1.0)
     center = np.zeros((len(time), 3))
     center[:, 0] = 90.0
@@ -54,6 +54,6 @@ def made_up(run):
 
 
 def made_up_results(full=False):
-    """Results of ``benchmarks/run cases`` as the paper tells them."""
+    """Results of ``benchmarks/run cases`` as claimed in the paper."""
     runs = plan.planned_runs(plan.STEP, full)
     return plan.Results(plan.STEP, {run.name: made_up(run) for run in runs})

@@ -38,10 +38,10 @@ LOST = [1, 2, 4], [np.inf, 1e-3, 1e-5]
     "costs, errors, target, price",
     [
         (POWERS, 1e6 * POWERS**-5.0, 1e6 * 300.0**-5.0, Cost(pytest.approx(300.0, rel=1e-12))),
-        # from where the error stays below, after a lucky first run
+        # the cost beyond which the error stays below, after a first run that is accurate by chance
         (*LUCKY, 1e-6, Cost(pytest.approx(4 * 2 ** (1 / 3), rel=1e-12))),
         (*LUCKY, 1e-2, Cost(1.0, "at most")),
-        # runs that are lost, and one whose cost is not known either
+        # failed runs, one of them without a known cost
         ([np.nan, 2, 4], LOST[1], 1e-2, Cost(2.0)),
         (*LOST, 1e-2, Cost(2.0)),
         ([1, 2], [1e-3, np.inf], 1e-2, None),
@@ -105,7 +105,7 @@ def test_errors_of_a_run_and_its_repetition(lammps, tmp_path):
 
 
 def test_defaults_are_those_of_the_fix(lammps):
-    """Giving the keywords that plan.py takes for defaults changes nothing, to the bit."""
+    """Stating the keywords that plan.py assumes as defaults does not change the last bit."""
     for formulation, method in DEFAULTS.items():
         given = {} if formulation == "second" else {"formulation": formulation}
         bare = plan.Run(SCENE, method, 320).variables(False)

@@ -61,7 +61,7 @@ def thermal(translation=1.3, axes=(1.0, 1.1, 1.2), resting=True, moments=MOMENTS
 
 
 def near(average, expected):
-    """Within four standard errors, which are small; and not what is 10 % off."""
+    """The temperatures are within four standard errors, which are small; values that are 10 % off are not."""
     assert average[1] < 0.02 * expected
     assert abs(average[0] - expected) < 4 * average[1]
     assert abs(average[0] - 1.1 * expected) > 4 * average[1]
@@ -94,7 +94,7 @@ TOPS = [
 
 @pytest.mark.parametrize(("moments", "turn", "expected"), TOPS)
 def test_axes_of_equal_moments_are_arbitrary(moments, turn, expected):
-    """One average stands for them, which does not depend on which axes they are."""
+    """Axes with equal moments have one average, which does not depend on the choice of the axes."""
     poses = thermal(moments=np.array(moments))
     found, before = averages.temperatures(poses), correlations.all_correlations(poses).functions
     about = {name.removeprefix("rotation about "): series for name, series in found.items() if " about " in name}
@@ -102,7 +102,7 @@ def test_axes_of_equal_moments_are_arbitrary(moments, turn, expected):
     for name, value in expected.items():
         near(averages.of_series(about[name]), value)
     assert not {"axis2_order1", "axis2_order2"} & set(before)
-    angles = np.linspace(0.0, 2.0, BODIES)[:, None]  # in each body another
+    angles = np.linspace(0.0, 2.0, BODIES)[:, None]  # a different choice in each body
     turns = Rotation.from_rotvec(angles * turn / np.linalg.norm(turn))
     poses.bodies.axes = np.swapaxes(turns.as_matrix(), 1, 2).copy()
     again, after = averages.temperatures(poses), correlations.all_correlations(poses).functions
@@ -124,7 +124,7 @@ def test_the_axis_of_some_is_arbitrary():
 
 
 def test_the_error_of_independent_samples():
-    """That of n samples is 1/sqrt(n), within what ten blocks know of it."""
+    """The error of n samples is 1/sqrt(n), within the uncertainty from ten blocks."""
     values = np.random.default_rng(5).normal(size=(200, 1000))
     errors = [averages.of_series(one)[1] for one in values]
     assert np.mean(np.square(errors)) == pytest.approx(1e-3, rel=0.15)
@@ -133,13 +133,14 @@ def test_the_error_of_independent_samples():
 
 
 def test_all_samples_count():
-    """Also those that are too few for one more in each block."""
+    """All frames are used, also if they do not suffice for one more in each block."""
     series = np.arange(19.0) ** 2
     assert averages.of_series(series)[0] == pytest.approx(series.mean(), rel=1e-14)
 
 
 def test_uneven_times():
-    """Frames that are denser in time do not count more; what needs even times is left out, and a warning says why."""
+    """Frames that are denser in time do not have a larger weight; results that need even times are left out, and a
+    warning says why."""
     poses = thermal()
     results, even = poses.results, averages.averages(thermal())
     hot = np.arange(FRAMES) < FRAMES // 2
@@ -149,7 +150,7 @@ def test_uneven_times():
         found = averages.averages(poses)
     assert [one.name for one in found] == [one.name for one in even if one.name.startswith("temperature")]
     assert found[0].value == pytest.approx(1.3 * (2.0 * 0.1 + 1.0) / 1.1, rel=0.01)
-    assert found[0].value < 1.3 * 1.2  # 1.3 x 1.5 if all counted alike
+    assert found[0].value < 1.3 * 1.2  # 1.3 x 1.5 if all frames had the same weight
 
 
 def test_energies_are_weighted_as_temperatures(tmp_path):
@@ -171,7 +172,7 @@ def test_energies_are_weighted_as_temperatures(tmp_path):
     totals = dumps.columns(tmp_path / "out" / "totals.csv")["ke_translation"]
     assert printed == pytest.approx(0.5 * 6 * known["temperature of translation"], rel=1e-5)
     assert printed != pytest.approx(0.5 * 6 * 1.01 * known["temperature of translation"], rel=1e-5)
-    # the integral over the time by trapezoids with longer ends, and not the plain mean
+    # the integral over time by the trapezoidal rule with longer ends, and not the plain mean
     assert printed == pytest.approx(np.average(totals, weights=np.gradient(times)), rel=1e-5)
     assert printed < 0.9 * totals.mean()
 
@@ -204,7 +205,7 @@ def test_two_dimensions(resting):
 
 
 def test_points_have_no_part_in_rotation():
-    """Averages of rotation with points among the bodies are those without them."""
+    """Averages of rotation are the same with and without points among the bodies."""
     mixed = thermal(moments=np.array([MOMENTS if body % 3 else 0.0 * MOMENTS for body in range(BODIES)]))
     results, own = mixed.results, ~mixed.bodies.point
     results.q[:, ~own], results.omega_space[:, ~own] = [1.0, 0.0, 0.0, 0.0], 0.0
@@ -249,7 +250,8 @@ def turning_about_z(angles):
 
 
 def test_correlation_times_without_an_exponential_tail():
-    """Free rotors have none, nor bodies of which a tenth turn slowly; bodies that are all alike have one."""
+    """Free rotors have no correlation time, nor do bodies of which a tenth turn slowly; bodies that are all alike have
+    one."""
     rng = np.random.default_rng(5)
     steps = 0.5 * rng.normal(size=(1000, 100))
     for slow, expected in ((1.0, True), (0.2, False)):

@@ -1,4 +1,5 @@
-"""Analysis in a box that changes, as at constant pressure: own motion of bodies, diffusion, volume and density."""
+"""Analysis in a box that changes, as at constant pressure: motion of bodies relative to the box, diffusion, volume and
+density."""
 
 import numpy as np
 import pytest
@@ -55,7 +56,7 @@ def displaced(walk):
 @pytest.mark.parametrize("names", ["xu yu zu", "x y z"])
 @pytest.mark.parametrize("backend", ["serial", "multiprocessing"])
 def test_own_motion(walk, tmp_path, names, backend):
-    """It changes with the steps; wrapped positions are followed through the changing box."""
+    """The box changes with the steps; wrapped positions are followed through the changing box."""
     poses = Poses(open_dump(walk.dump(tmp_path / "a.dump", names)).atoms)
     poses.run(backend=backend, **({"n_workers": 2} if backend == "multiprocessing" else {}))
     found = own(poses)

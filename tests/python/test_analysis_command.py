@@ -1,4 +1,4 @@
-"""Dumps of the scenes: analysis against the fix's own numbers; the command and its output."""
+"""Dumps of the scenes: analysis compared with the numbers of the fix; the command and its output."""
 
 import csv
 import re
@@ -55,7 +55,7 @@ def test_energy_belongs_to_the_dumped_pose(run_case, tmp_path, formulation):
     cage = paper_problem(1, dtype=np.float64).field
     for k, ts in enumerate(open_dump(tmp_path / "poses.dump").trajectory):
         energy, _ = cage.energy_and_forces(ts.data["x"])
-        # what is left is of second order in corrected - predicted
+        # the remaining difference is of second order in corrected - predicted
         assert values.potential[k] == pytest.approx(energy, abs=1e-8)
         moved = cage.energy_and_forces(ts.data["x"] + [1e-4, 0, 0])[0]
         assert values.potential[k] != pytest.approx(moved, abs=1e-8)
@@ -63,7 +63,7 @@ def test_energy_belongs_to_the_dumped_pose(run_case, tmp_path, formulation):
 
 @pytest.mark.parametrize("formulation", ["first", "second"])
 def test_pose_is_that_of_the_reference(run_case, tmp_path, formulation):
-    """Recovered center and rotation against the independent integrator."""
+    """Recovered center and rotation compared with the independent integrator."""
     run_case(1, formulation=formulation, dt=0.02, steps=5000, every=5000, dump=5000)
     found = Poses(open_dump(tmp_path / "poses.dump").atoms, reference=SITES).run().results
     end = reference_state(paper_problem(1), 100.0).double
@@ -113,7 +113,7 @@ def test_poses_are_those_of_the_fixs_own_array(water):
 
 
 def test_units_are_those_of_lammps():
-    """The factors are LAMMPS' own."""
+    """The factors agree with LAMMPS."""
     lmp = open_library()
     try:
         for style, units in UNITS.items():
@@ -171,7 +171,7 @@ def files(folder):
     ],
 )
 def test_an_analysis_of_other_settings_is_kept(tmp_path, arguments, text):
-    """Nothing is written where another one is; the same one is repeated, also of a dump that has grown."""
+    """Results of another analysis are not overwritten; the same analysis is repeated, also of a dump that has grown."""
     path, motion = tmp_path / "made.dump", dumps.Motion([3, 3])
     dumps.write(path, motion, np.arange(8.0))
     out = tmp_path / "out"
@@ -188,7 +188,8 @@ def test_an_analysis_of_other_settings_is_kept(tmp_path, arguments, text):
 
 
 def test_an_analysis_of_another_dump_is_kept(tmp_path):
-    """Of another file, of the same file with another run, and of a release without settings.json."""
+    """Results of another file, of the same file with another run, and of a release without settings.json are
+    refused."""
     path, other, out = tmp_path / "made.dump", tmp_path / "other.dump", tmp_path / "out"
     dumps.write(path, dumps.Motion([3]), np.arange(8.0))
     dumps.write(other, dumps.Motion([3], seed=2), np.arange(8.0))

@@ -86,7 +86,7 @@ def written(atoms, path, units, **options):
 def test_every_format_is_right_in_every_unit_style(flights, tmp_path, suffix, units):
     atoms = open_dump(flights / f"{units}.timed").atoms
     found = written(atoms, tmp_path / f"x.{suffix}", units)
-    if suffix == "pdb":  # whose box MDAnalysis does not find again before a MODEL
+    if suffix == "pdb":  # MDAnalysis does not find the box before a MODEL
         assert "CRYST1  100.000  100.000  100.000" in (tmp_path / "x.pdb").read_text()
     elif suffix == "xyz":  # of no element, as their masses say
         assert found.atoms.names.tolist() == ["T1"] * 4 or units != "lj"
@@ -108,7 +108,7 @@ def test_every_format_is_right_in_every_unit_style(flights, tmp_path, suffix, un
     if moving[0]:
         v = np.array([ts.velocities.copy() for ts in found.trajectory])
         assert v[..., 0] == pytest.approx(SPEED, rel=1e-6)
-        # what moves and how fast agree, whatever the factors are
+        # motion and speed agree, for any factors
         rate = (x[-1] - x[0])[:, 0] / (times[-1] - times[0])
         assert v[-1, :, 0] == pytest.approx(rate, rel=1e-3)
 
@@ -125,7 +125,7 @@ LABEL = "LAMMPS units lj: 1 sigma is 1 Angstrom here, 1 tau is 1 ps"
 
 @pytest.mark.parametrize("suffix", ["dcd", "xyz", "pdb", "trr"])
 def test_lj_is_labeled(flights, tmp_path, suffix):
-    """In the file where it has room for text, in the one beside it, and by the command."""
+    """The file says so if it has room for text, and so do the file beside it and the command."""
     path = tmp_path / f"x.{suffix}"
     for units in ("real", "lj"):
         files = convert(open_dump(flights / f"{units}.timed").atoms, path, units)
@@ -202,7 +202,7 @@ def test_dcd_keeps_any_first_time(tmp_path, start):
 
 
 def test_uneven_times(tmp_path):
-    """Of a run with a step that follows the error: xtc and trr hold them, dcd is refused."""
+    """Uneven times of a run with a changing step: xtc and trr store them, dcd is refused."""
     atoms = made(tmp_path / "x.dump", [0.0, 1.0, 2.5])
     assert [ts.time for ts in written(atoms, tmp_path / "x.trr", "metal").trajectory] == [0, 1, 2.5]
     with pytest.raises(ValueError, match="needs frames that are evenly spaced in time.*xtc and trr store"):
@@ -240,7 +240,7 @@ def test_formats_that_are_not_written(tmp_path, suffix):
 
 # --- dumps with units and times ----------------------------------------------------------------------
 def test_the_header_may_say_units_once_or_more(tmp_path):
-    """A second run that appends says them again."""
+    """A second run that appends to the dump repeats units and times."""
     motion = dumps.Motion([3])
     one = "ITEM: UNITS\nmetal\nITEM: TIME\n0.5\n" + dumps.frame(1, motion.rows(0.5))
     two = "ITEM: TIME\n1.5\n" + dumps.frame(2, motion.rows(1.5))

@@ -1,4 +1,4 @@
-"""Mean squares, correlations and stays of known motions, and the same sums written down directly."""
+"""Mean squares, correlations and stays of known motions, compared with direct sums."""
 
 import dumps
 import numpy as np
@@ -30,7 +30,7 @@ def square(a, b):
 
 
 def test_displacement_of_a_straight_motion(held):
-    """v^2 t^2, far from the origin."""
+    """The mean square is v^2 t^2, far from the origin."""
     velocity = RNG.normal(size=(BODIES, 3))
     time = 0.1 * np.arange(FRAMES)
     center = 1e4 + velocity * time[:, None, None]
@@ -89,7 +89,7 @@ def test_directions_stand_for_all(moments, first, number):
                 u = np.roll([x, y, z], first)
                 expected += weight / 16 * correlations.orientation_correlation(q, u, order)
         assert found == pytest.approx(expected, abs=1e-12)
-        if number == 3:  # and a single one of them is not
+        if number == 3:  # and a single direction does not agree
             assert correlations.orientation_correlation(q, few[0], order) != pytest.approx(expected, abs=1e-2)
 
 
@@ -107,7 +107,7 @@ def test_orientation_of_an_even_rotation(held):
 
 
 def test_rotation_of_linear_bodies_is_that_of_their_axes(tmp_path):
-    """Turned across its axis a dumbbell turns like any body; the axis of a point is never asked for."""
+    """A dumbbell that turns across its axis turns like any body; the axis of a point is never used."""
     motion = dumps.Motion([2, 2, 3], linear=[0, 1, 2])
     axis = motion.turns(0.0).apply([0, 0, 1])
     motion.omega -= axis * (axis * motion.omega).sum(axis=1, keepdims=True)
@@ -152,13 +152,13 @@ def test_stays_are_those_made_up():
     assert rows.tolist() == [[0, 0, 0, 3], [0, 1, 5, 7], [0, 0, 7, 10]]
     assert found.complete.tolist() == [False, True, False]
     assert found.fraction().tolist() == [0.6, 0.2]
-    # 8 origins; a lag later the last is not seen, and 3 - 1, 2 - 1, 3 - 1 are still there
+    # 8 origins; at a lag of 1 the last origin is missing, and 3 - 1, 2 - 1, 3 - 1 bodies are still there
     assert found.survival()[:3] == pytest.approx([1.0, 5 / 7, 2 / 6])
     assert residence.stays(center, PLACES, 0.05, time).body.tolist() == []
 
 
 def test_stays_at_uneven_times():
-    """A frame counts for the time it stands for, and there is no lag for a survival."""
+    """A frame is weighted by the time it represents, and there is no lag for a survival function."""
     time = np.array([0.0, 0.1, 0.2, 0.3, 1.3, 2.3, 3.3])
     found = residence.stays(visiting([0, 0, 0, 0, 1, 1, -1]), PLACES, 1.0, time)
     expected = np.array([0.1 + 0.1 + 0.1 + 0.55, 1.0 + 1.0]) / (0.1 + 0.1 + 0.1 + 0.55 + 1.0 + 1.0 + 1.0)
@@ -201,7 +201,7 @@ def test_impossible_places(places, radius, text):
 
 
 def test_times_of_frames():
-    """Those of formats in single precision are even; a repeated frame is named."""
+    """Times of formats in single precision count as even; the message names a repeated frame."""
     single = (1e3 + 0.01 * np.arange(400)).astype(np.float32)
     assert correlations.lags(single)[-1] == pytest.approx(3.99, abs=1e-3)
     for time in ([0.0, 1.0, 1.0, 2.0, 3.0, 4.0], [0.0, 1.0, 1.01, 2.0, 3.0, 4.0]):

@@ -59,7 +59,8 @@ def found(motion, seed, *arguments):
     ],
 )
 def test_errors_hold(motion, arguments, expected):
-    """Over 20 seeds; most have a coefficient, and 10 % more is refused where it is known to less than 3 %."""
+    """Tested over 20 seeds; most have a coefficient, and a value that is 10 % larger is refused if the error is below 3
+    %."""
     known = [one for one in (found(motion, seed, *arguments) for seed in SEEDS) if not np.isnan(one.value)]
     assert len(known) >= 15
     deviations = np.array([(one.value - expected) / one.error for one in known])
@@ -78,7 +79,7 @@ def test_free_flight():
 
 @pytest.mark.parametrize(("frames", "bodies", "time"), [(400, 60, 5.0), (2000, 20, 50.0), (2000, 3, 20.0)])
 def test_bodies_that_stay_where_they_are(frames, bodies, time):
-    """As in ice: none of 20 seeds has a coefficient."""
+    """As in ice, none of 20 seeds has a coefficient."""
     for seed in SEEDS:
         one = found(bound, seed, frames, bodies, time)
         assert np.isnan(one.value) and one.why
@@ -92,7 +93,7 @@ def test_runs_that_are_too_short():
 
 
 def test_bodies_that_move_together():
-    """Their scatter is not informative, and blocks of the run are: errors agree with a single body."""
+    """The scatter of the bodies is not informative, but blocks of the run are: errors agree with a single body."""
     deviations = []
     for seed in SEEDS:
         one = np.random.default_rng(seed).normal(size=(2000, 1, 3)).cumsum(axis=0)
@@ -113,7 +114,7 @@ def test_time_and_dimensions():
 
 
 def test_covariance_of_a_brownian_motion():
-    """That of mean squares over 4000 walks."""
+    """The covariance agrees with mean squares over 4000 walks."""
     steps, lags = 60, LAGS[:4]
     walks = np.random.default_rng(3).normal(size=(steps + 1, 4000)).cumsum(axis=0)
     squares = np.array([((walks[lag:] - walks[:-lag]) ** 2).mean(axis=0) for lag in lags])

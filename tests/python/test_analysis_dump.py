@@ -1,4 +1,4 @@
-"""Dumps as universes: every kind of columns gives the same bodies; unusable dumps are refused clearly."""
+"""Dumps as universes: every kind of columns gives the same bodies; unusable dumps are refused with a clear message."""
 
 import re
 
@@ -65,7 +65,7 @@ def test_image_flags(write, bounds):
 
 
 def test_without_image_flags_bodies_are_made_whole_and_followed(write):
-    times = np.linspace(0.0, 400.0, 41)  # some cross the box and go on
+    times = np.linspace(0.0, 400.0, 41)  # some bodies cross the box and move on
     fast = dumps.Motion([3, 4, 5], seed=3)
     assert (np.abs(fast.velocity) * 400 > EDGE).any()
     columns = "id mol type mass x y z vx vy vz"
@@ -149,7 +149,8 @@ PROPERTY = "\ni_body\n\n" + "".join(f"{k + 1} 7\n" for k in range(12))
 
 
 def test_a_data_file_with_sections_of_fixes(write, tmp_path):
-    """After velocities they do no harm; elsewhere the message has the file and the forbidden sections."""
+    """Unknown sections after the velocities do no harm; elsewhere the message names the file and the forbidden
+    sections."""
     path = write(MOTION, TIMES, lambda t, r: r[:, [0, 4, 5, 6]], columns="id xu yu zu")
     atoms = open_dump(path, data=data_of(tmp_path, VELOCITIES + PROPERTY)).atoms
     assert atoms.masses.tolist() == [2.5] * 12 and atoms.resids.tolist() == (MOTION.of + 1).tolist()
@@ -299,7 +300,7 @@ def test_atoms_that_come_and_go(write, when, change, text):
 
 @pytest.mark.parametrize("lost", [1, 30, 400, 1780, 1890])
 def test_a_last_frame_that_is_cut_off(write, lost):
-    """As a run leaves it that is killed while it writes, in the rows or in the header."""
+    """A dump of a run that was killed while it was writing, in the rows or in the header."""
     path = write(MOTION, TIMES)
     text = path.read_text()
     path.write_text(text[:-lost])
@@ -318,7 +319,8 @@ def test_a_first_frame_that_is_cut_off(write, kept):
 
 
 def test_columns_in_another_order_from_frame_to_frame(write):
-    """As after a restart with another script, which appends; a set of other columns is refused."""
+    """Columns may change their order, as after a restart with another script that appends; other columns are
+    refused."""
     path = write(MOTION, TIMES)
     turned = np.arange(10)[::-1]
     names = dumps.COLUMNS.split()

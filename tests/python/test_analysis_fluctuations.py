@@ -101,7 +101,8 @@ def test_the_command_leaves_it(gas, tmp_path):
 
 
 def test_rotation_about_each_axis():
-    """Two axes with equal moments have the mean of both; a rotation about the third shows in the third only."""
+    """Two axes with equal moments have the mean of both; a rotation about the third axis affects only the third
+    axis."""
     rng = np.random.default_rng(2)
     q = Rotation.random(500 * 20, random_state=rng).as_quat(scalar_first=True)
     body = rng.normal(size=(500, 20, 3)) * [1.0, 2.0, 3.0]

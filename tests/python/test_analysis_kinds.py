@@ -1,4 +1,4 @@
-"""Mixtures: kinds of bodies are told apart, and each has the averages and functions of its own."""
+"""Mixtures: kinds of bodies are distinguished, and each kind has separate averages and functions."""
 
 import dumps
 import numpy as np

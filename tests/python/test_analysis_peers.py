@@ -1,4 +1,4 @@
-"""The same numbers from other people's programs: MDAnalysis, its kit waterdynamics, and freud."""
+"""The same numbers from other programs: MDAnalysis, its kit waterdynamics, and freud."""
 
 import warnings
 
@@ -63,7 +63,8 @@ def test_orientations_of_freud():
 
 @pytest.mark.parametrize("order", [1, 2])
 def test_orientations_of_waterdynamics(tmp_path, order):
-    """It leaves out origins that overlap, so bodies turn evenly, and every origin gives the same."""
+    """The kit leaves out origins that overlap; therefore bodies turn uniformly here, so that every origin gives the
+    same result."""
     motion = dumps.Motion([3] * BODIES, omega=0.1)
     poses = Poses(open_dump(dumps.write(tmp_path / "even.dump", motion, np.arange(float(FRAMES)))).atoms).run()
     peer = WaterOrientationalRelaxation(poses.atoms.universe, "all", 0, FRAMES, FRAMES // 2 - 1, order=order)

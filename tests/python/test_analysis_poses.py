@@ -49,7 +49,7 @@ def test_signs_of_quaternions_do_not_jump(tmp_path):
 
 
 def test_velocities_are_those_of_the_motion(poses):
-    """Of the linear body only what is across its axis moves its sites; a point does not turn."""
+    """For the linear body only rotation perpendicular to its axis moves its sites; a point does not turn."""
     found, omega = poses.results, np.tile(MOTION.omega, (7, 1, 1))
     axis = MOTION.shape[MOTION.of == 3][0]
     along = np.array([MOTION.turns(time)[3].apply(axis / np.linalg.norm(axis)) for time in TIMES])
@@ -62,7 +62,7 @@ def test_velocities_are_those_of_the_motion(poses):
 
 
 def test_energies_and_momenta_are_those_of_the_sites(poses):
-    """Of rigid sites the sums over the sites are the same, written down a second time."""
+    """For rigid sites, direct sums over the sites give the same numbers."""
     found, totals = poses.results, poses.totals()
     for k, time in enumerate(TIMES):
         x, v = MOTION.sites(time)
@@ -173,7 +173,7 @@ def test_impossible_arguments(dump, arguments, text):
 
 
 def test_memory_does_not_grow_with_frames(tmp_path):
-    """Six times the frames, with the table in a file: the same memory."""
+    """With six times as many frames and the table in a file, the memory is the same."""
     import tracemalloc
 
     motion = dumps.Motion([3] * 400)
@@ -185,9 +185,9 @@ def test_memory_does_not_grow_with_frames(tmp_path):
         poses.run()
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
-    grown = poses.results.table.nbytes * 5 / 6  # what a table in memory needs more
+    grown = poses.results.table.nbytes * 5 / 6  # the additional memory of a table in memory
     assert peaks[1] - peaks[0] < 0.1 * grown
-    # and the measurement would detect it
+    # and the measurement would detect this memory
     tracemalloc.start()
     Poses(open_dump(path).atoms).run()
     assert tracemalloc.get_traced_memory()[1] - peaks[1] > grown
@@ -195,7 +195,8 @@ def test_memory_does_not_grow_with_frames(tmp_path):
 
 
 def test_averages_hold_a_few_frames(tmp_path):
-    """Four times the frames, with the table in a file: averages and correlations need no more than their series."""
+    """With four times as many frames and the table in a file, averages and correlations need only the memory of their
+    series."""
     import tracemalloc
 
     peaks, motion = [], dumps.Motion([3] * 300)
@@ -226,7 +227,7 @@ def test_csv_has_every_digit(poses, tmp_path):
 
 @pytest.mark.filterwarnings("ignore")
 def test_other_trajectories(dump, tmp_path):
-    """Any universe of MDAnalysis will do, in single precision."""
+    """Any universe of MDAnalysis can be used, in single precision."""
     import MDAnalysis
 
     universe = open_dump(dump)
@@ -260,7 +261,7 @@ def test_pages_of_a_mapped_file_are_let_go(tmp_path):
     assert max(held) < 0.2 * table.nbytes
     assert (table["a"][:, 7] == np.arange(400)).all()
     assert (np.load(tmp_path / "t.npy")["a"][:, -1] == np.arange(400)).all()
-    # and without letting go it does
+    # without releasing pages the memory grows
     mapped.release(table)
     before = resident()
     assert table["a"].sum() == 20000 * 399 * 200
@@ -285,7 +286,8 @@ def test_results_need_a_run(dump, use):
 
 
 def test_bodies_that_are_not_rigid(tmp_path):
-    """They are named; of rigid ones six digits say nothing else, however far from the origin."""
+    """Bodies that are not rigid are named; rigid bodies with six digits cause no warning, at any distance from the
+    origin."""
 
     def bent(time, rows):
         rows[0, 4] += 0.02 * time * (time < 21.0)
@@ -317,7 +319,7 @@ def test_other_formats_have_the_units_of_mdanalysis():
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("parts", [1, 2])
 def test_the_dump_reader_of_mdanalysis_has_no_units(dump, parts):
-    """Its velocities stay in LAMMPS' units, and its times are in ps."""
+    """Velocities stay in LAMMPS' units, and times are in ps."""
     same = MDAnalysis.Universe.empty(16, n_residues=5, atom_resindex=MOTION.of)
     same.add_TopologyAttr("masses", MOTION.masses)
     same.add_TopologyAttr("resids", range(1, 6))

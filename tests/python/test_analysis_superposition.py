@@ -1,4 +1,4 @@
-"""Known rotations are found, for bodies of any kind; the principal frame is the bodies' own."""
+"""Known rotations are found, for bodies of any kind; the principal frame depends only on the bodies."""
 
 import numpy as np
 import pytest
@@ -91,7 +91,7 @@ def test_residual_sees_a_site_out_of_place(site):
 
 
 def test_linear_bodies_and_points():
-    """Of a linear body the axis is found, and no turn about it is made up; a point is not turned."""
+    """For a linear body the axis is found, without a rotation about it; a point is not turned."""
     bodies = bodies_of([3, 1, 2, 5], (0, 0, 1))
     assert bodies.linear.tolist() == [True, False, True, True]
     assert bodies.point.tolist() == [False, True, False, False]
@@ -114,7 +114,7 @@ def test_shortest_turn_of_opposite_directions():
 
 
 def test_inertia_is_that_of_the_sites():
-    """Against the sum written down a second time, body by body."""
+    """Compared with the direct sum, body by body."""
     bodies = bodies_of([3, 6, 4])
     bodies.set_shape(bodies.shape, principal=True)
     for b in range(3):

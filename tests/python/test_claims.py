@@ -1,4 +1,4 @@
-"""Verdicts follow from the numbers: made-up results, and the same ones spoilt."""
+"""Verdicts follow from the numbers: made-up results, and the same results with errors."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ def spoil(results, change, **chosen):
 
 
 def judge(results, measure, which=None):
-    """The claim that ``measure`` is about, judged; ``which`` tells claims of a kind apart."""
+    """The verdict on the claim of ``measure``; ``which`` distinguishes claims of the same kind."""
     (claim,) = (
         claim
         for claim in claims.CLAIMS

@@ -1,4 +1,4 @@
-"""Coefficients of the corrector: placement and order, the search, properties against other ways to them."""
+"""Coefficients of the corrector: placement and order, the search, and properties compared with other methods."""
 
 import re
 from dataclasses import replace
@@ -25,7 +25,7 @@ ROOTS = {
 
 
 def made(formulation):
-    """A Corrector of decimals, with ROOTS and all order."""
+    """A Corrector of decimals, with ROOTS and the full order."""
     order = 2 if formulation == "second" else 1
     sets = [completed(order, decimals(placed(order, roots))) for roots in ROOTS[formulation]]
     return Corrector(formulation, (tuple(sets[0]), tuple(sets[-1])))
@@ -167,5 +167,5 @@ def test_motions_are_those_of_the_kernel_with_the_coefficients_that_are_given():
     known = (85.56573248988141, -6.06135624295223, 6.86227956266460)  # tests/unit/scenes.h
     right = gear("second", 7)
     assert np.linalg.norm(right.cage(0.025, compensate=True) - known) < 1e-10
-    for wrong in list(one_percent_off(right))[1:3]:  # c_1 and c_3, which order contains
+    for wrong in list(one_percent_off(right))[1:3]:  # c_1 and c_3, whose order this is
         assert np.linalg.norm(wrong.cage(0.025, compensate=True) - known) > 2e-10

@@ -1,4 +1,4 @@
-"""Collisions beside other solvers: forces of the scenes, true counts, and the arithmetic of the ratios."""
+"""Collisions compared with other solvers: forces of the scenes, correct counts, and the arithmetic of the ratios."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The command gearquat as a user meets it: help whose examples work, version, missing extra."""
+"""The command gearquat for users: help with working examples, version, missing extra."""
 
 import re
 import shutil
@@ -32,7 +32,7 @@ def test_examples_of_the_help_can_be_pasted(command, tmp_path):
         shutil.copytree(EXAMPLES / folder, tmp_path / "examples" / folder)
     done = paste(examples_of(command), tmp_path)
     assert list(tmp_path.rglob(f"gearquat-{command}/*.png"))
-    # and no progress bar where nobody watches
+    # and no progress bar if the output is not a terminal
     assert "%|" not in done.stderr
 
 
@@ -84,7 +84,7 @@ def test_gearquat_analyze_runs_apart_from_the_rest(tmp_path):
 
 
 def test_the_entry_for_the_registry_of_mdakits():
-    """It has the keys that the registry requires, and says the same as the package."""
+    """The file has the keys that the registry requires, and agrees with the package."""
     entry = yaml.safe_load((ROOT / "src" / "analysis" / "metadata.yaml").read_text())
     required = "project_name authors maintainers description keywords license project_home documentation_home documentation_type"
     assert all(entry[key] for key in required.split())
@@ -94,7 +94,7 @@ def test_the_entry_for_the_registry_of_mdakits():
     assert f"mdanalysis{entry['mdanalysis_requires']}" in package.get_all("Requires-Dist")
 
 
-#: Stand-ins for git, which clones what has the release TAG or none, and for pip, which knows what it has installed.
+#: Replacements of git, whose clone has the release TAG or no tag, and of pip, which records what it has installed.
 GIT_AND_PIP = """
 git() {
   case "$1" in

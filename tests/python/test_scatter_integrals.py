@@ -39,7 +39,7 @@ def test_rigid_spheres():
     found = results(*flown(), facts(), sigma=1.0).answers[0]
     for name in ("Omega(1,1)*", "Omega(2,2)*", "Omega(1,2)*", "A*", "C*"):
         assert agrees(found.estimates[name], 1.0), name
-        # and an error of a percent is noticed
+        # and an error of one percent is detected
         assert found.estimates[name].error < 2e-3 and not agrees(found.estimates[name], 1.01)
     assert agrees(found.estimates["cross section"], np.pi)
     exact = 5.0 / 16.0 * np.sqrt(1.0 / np.pi)
@@ -49,7 +49,7 @@ def test_rigid_spheres():
 
 @pytest.mark.parametrize("density", [{"s0": 0.7}, {"s0": 0.3, "s1": 0.2}, {"s1": 2.0, "power": 0.5}])
 def test_any_density_of_flights(density):
-    """Spheres again, with flights that are drawn where they count, or where they do not."""
+    """Spheres again, with flights that are drawn where they contribute, or where they do not."""
     estimates = results(*flown(**density), facts()).answers[0].estimates
     for name, exact in (("cross section", np.pi), ("A*", 1.0), ("C*", 1.0)):
         assert agrees(estimates[name], exact) and not agrees(estimates[name], 1.02 * exact)
@@ -103,7 +103,7 @@ def test_relaxation_of_rotation():
 
 
 def test_the_form_of_monchick_yun_and_mason():
-    """With detailed balance both forms of the momentum flux have one mean."""
+    """With detailed balance both forms of the momentum flux have the same mean."""
     x, gain = mixed(3, 1.0)
     sine2 = np.random.default_rng(4).random(len(x))
     pairs = Collisions(x, x - gain, np.sqrt(1.0 - sine2), sine2, balanced=True)
@@ -137,7 +137,7 @@ def test_standard_errors():
 
 
 def test_flights_that_have_not_parted_are_counted():
-    """Their contribution is in the error."""
+    """The contribution of these flights is included in the error."""
     columns, plan = flown()
     columns["fate"] = np.where(np.arange(N) < 120, "unparted", "parted")
     columns["angle"][:120] = columns["energy_after"][:120] = np.nan
@@ -161,7 +161,7 @@ def test_no_flight_has_parted():
 
 
 def test_what_is_left_out_is_in_the_error():
-    """Of each quantity its own part, and of ratios both."""
+    """Each quantity includes its part beyond the largest impact parameter, and ratios include both parts."""
     columns, plan = flown()
     left = [{"momentum": 0.03, "viscosity": 0.01, "rotation": None}]
     own = results(columns, plan, facts()).answers[0].estimates
@@ -172,7 +172,7 @@ def test_what_is_left_out_is_in_the_error():
 
 
 def test_what_is_beyond_the_largest_impact_parameter():
-    """Losses of b^-6: integrals are known, within and beyond the cutoff."""
+    """With losses proportional to b^-6 the integrals are known, within and beyond the cutoff."""
     edges = np.concatenate([[0.0], 10.0 * np.geomspace(0.04, 1.0, 200)])
     b = np.sqrt(0.5 * (edges[1:] ** 2 + edges[:-1] ** 2))
     h = np.minimum(1.0, (b / 2.0) ** -6.0)

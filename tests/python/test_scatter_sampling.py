@@ -45,7 +45,7 @@ def test_a_flight_depends_on_its_number_only():
 
 @pytest.mark.parametrize("temperatures", [(2.0,), (1.0, 2.0, 3.0)])
 def test_a_start_does_not_depend_on_those_beside_it(temperatures):
-    """To the last digit."""
+    """Starts agree to the last digit."""
     pair, plan = made_up_pair(), Plan((3,), temperatures, None, None, 4.0, 2.0, 3.0, 0.5)
     every = plan.starts(pair, range(40))
     for number in range(40):

@@ -23,7 +23,7 @@ def encounter(random):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_rates_keep_energy_momentum_and_angular_momentum(seed):
-    """And a torque or a force that is wrong by 1 % does not."""
+    """A torque or a force that is wrong by 1 % does not agree."""
     two, y = encounter(np.random.default_rng(seed))
     rates = two.rates(0.0, y.ravel()).reshape(2, 13)
 

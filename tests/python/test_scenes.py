@@ -63,7 +63,7 @@ def test_initial_energy_refuses_another_cage(lmp_wheel, examples, tmp_path, char
 
 @pytest.mark.parametrize("formulation", MOTIONS)
 def test_unrotated_is_another_body(run_case, formulation):
-    """Same energy, same start, another motion: the infile is read."""
+    """Energy and start are the same but the motion differs, so the infile is read."""
     end = [
         run_case(1, formulation=formulation, body=body, dt=0.02, steps=2500, every=2500).center[-1]
         for body in ("consistent", "unrotated")
@@ -127,7 +127,7 @@ def coated_energy(generator, coat):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_energy_of_the_coated_body(run_scene, generator, method):
-    """Below zero, so that the body stays; an independent sum."""
+    """The energy is below zero, so the body stays in the cage; the sum is independent."""
     expected = coated_energy(generator, EPSILON["coat"])
     assert expected == pytest.approx(-0.82575686, abs=5e-9)
     total = run_scene("coated", method=method, steps=0)["v_total"][0]

@@ -1,4 +1,4 @@
-"""Every study as a whole, with little of everything: runs, judgment, tables, pictures, page."""
+"""Every study as a whole, with short runs: runs, judgment, tables, pictures, page."""
 
 import math
 from dataclasses import replace
@@ -13,12 +13,12 @@ from running import ROOT
 
 #: test_liquids.py makes its page of made-up runs, because real ones take minutes
 STUDIES = [study for key, study in all_studies().items() if key != "liquids"]
-#: where a quick run of all parts takes minutes; there is no page of some parts
+#: studies of which even a quick run of all parts takes minutes; there is no page from some of the parts
 PARTS = {"accuracy": ("top",), "scatter": ("conservation",)}
 
 
 def beyond(bound, sign):
-    """A value that is out of a bound by one percent, or by a little of a bound that is zero."""
+    """A value that exceeds a bound by one percent, or by a small number if the bound is zero."""
     return bound + sign * (0.01 * abs(bound) or 1e-12)
 
 

@@ -34,7 +34,7 @@ def test_reference_trajectory(run_case, formulation, body):
 
 @pytest.mark.parametrize("formulation", LIMIT)
 def test_reference_check_can_fail(run_case, formulation):
-    """A step that does not reach t = 200 but 1 % less."""
+    """With a step that ends at 1 % less than t = 200."""
     found = run_case(1, formulation=formulation, dt=0.02 * 0.99, steps=10000, every=10000)
     assert np.linalg.norm(found.center[-1] - REFERENCE["consistent", 200]) > LIMIT[formulation]
 
@@ -55,7 +55,7 @@ def test_zero_start_is_of_first_order(run_case, formulation):
 
 
 def test_c0_velocity_costs_two_orders(run_case):
-    """The paper's 3/16 instead of 3/20."""
+    """With the coefficient 3/16 of the paper instead of 3/20."""
     steps = (0.1, 0.05)
     found = [errors(run_case, (200,), dt, c0="velocity")[0] for dt in steps]
     assert 4.0 < order_of(steps, found) < 6.0
@@ -63,7 +63,7 @@ def test_c0_velocity_costs_two_orders(run_case):
 
 @pytest.mark.parametrize("formulation", LIMIT)
 def test_the_yardstick_is_beaten(run_case, formulation):
-    """At the same step, the same number of force evaluations."""
+    """At the same step, the number of force evaluations is the same."""
     ours = errors(run_case, (200,), 0.02, formulation=formulation)[0]
     yardstick = errors(run_case, (200,), 0.02, formulation="rigid")[0]
     assert ours < 1e-2 * yardstick

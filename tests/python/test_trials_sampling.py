@@ -79,12 +79,12 @@ class MadeUpLiquid:
         return measure.Trial(keywords, dt, steps, time, None, None, 1, *seconds, energies=values)
 
 
-#: what permits longer steps than the default
+#: keywords that permit longer steps than the default
 LONGEST = "formulation second values 4"
 
 
 def steep(keywords, dt):
-    """As in water: the default permits longer steps, and the own fix does not drift."""
+    """As in water, the default permits longer steps, and the fix of the deck does not drift."""
     limit = {"": 4.1, LONGEST: 5.1}.get(keywords, 2.1)
     return -0.08 * (dt / limit) ** 9 if keywords is not None else 0.01
 
@@ -107,7 +107,7 @@ def test_a_method_that_drifts_is_never_recommended(monkeypatch, seed, noise, tri
     assert (keywords, dt) == ((LONGEST, 5.0) if LONGEST in tries else ("", 4.0))
     assert math.isnan(found.enough) and "--budget" not in sampling_report.text(deck, found)
     assert found.choice.drift.time > 0.9 * drift.longest(deck) and deck.now < 180.0
-    for run in found.rows:  # each has its drift, and is judged by it
+    for run in found.rows:  # each step is judged by its drift
         true = only(run.keywords, run.dt)
         assert abs(run.drift.rate - true) < 5.0 * run.drift.error + 0.01 * abs(true) or run.drift.fails
         assert not (run.drift.holds and abs(true) > found.bound)
@@ -121,7 +121,7 @@ def test_the_bound_is_the_users(monkeypatch):
 
 @pytest.mark.parametrize("pace", [0.01, 0.03, 0.1])
 def test_a_budget_that_is_too_small_is_told(monkeypatch, pace):
-    """With the budget that the text names the run has the length that it had not, or shows what it did not."""
+    """With the budget that the message states, the run reaches its full length, or decides the question."""
     small, more = (MadeUpLiquid(steep, pace=pace, noise=1e-4) for _ in range(2))
     found = answer_of(monkeypatch, small)
     text, what = sampling_report.text(small, found), "of 100000 fs" if found.recommended else "that is long enough to tell"
@@ -133,7 +133,8 @@ def test_a_budget_that_is_too_small_is_told(monkeypatch, pace):
 
 
 def test_what_the_script_has_already_is_not_tried_again(monkeypatch):
-    """A script with the fix and its defaults gets a longer step; further trials are only at the user's request."""
+    """For a script with the fix and its defaults, a longer step is recommended; further trials are made only at the
+    user's request."""
     found = answer_of(monkeypatch, MadeUpLiquid(lambda keywords, dt: steep(keywords or "", dt), own=""))
     assert {run.keywords for run in found.runs} == {None} and found.recommended == (None, 4.0)
     found = answer_of(monkeypatch, MadeUpLiquid(steep), tries=[LONGEST])
@@ -194,7 +195,7 @@ def test_the_budget_is_kept(monkeypatch, tmp_path, pace):
 def test_errors_that_are_asked_for_are_those_of_a_trajectory(monkeypatch):
     found = answer_of(monkeypatch, MadeUpLiquid(steep), errors=[1e-3], time=100.0)
     assert isinstance(found, cost.Costs)
-    for row in found.rows:  # and nothing that drifts is recommended there either
+    for row in found.rows:  # and no step with a drift is recommended there
         assert row.choice is None or abs(steep(*row.recommended)) < found.bound
 
 
@@ -214,7 +215,7 @@ def test_steps_that_people_write(dt, longer, shorter):
 
 # --- what is measured -----------------------------------------------------------------------------------
 def test_difference_of_temperatures_and_its_error():
-    """Over many seeds a difference of 3 K is found within its error, and 1 % more or less is noticed."""
+    """Over many seeds a difference of 3 K is found within its error, and a change of 1 % is detected."""
     z = []
     for seed in range(200):
         deck = MadeUpLiquid(steep, seed, apart=lambda dt: 3.0)

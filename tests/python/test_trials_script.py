@@ -139,7 +139,7 @@ def test_translation(line, translated):
     ],
 )
 def test_lines_that_are_refused(line, said):
-    """For what fix gear/quat does not have, and for what no fix takes."""
+    """Errors for keywords that fix gear/quat does not have, and for keywords that no fix accepts."""
     with pytest.raises(DeckError, match=said):
         script.translate(parse(line))
 
@@ -159,7 +159,7 @@ def test_keywords_of_the_method_are_replaced_and_those_of_the_body_kept():
 
 
 def test_corrector_gear_is_added_where_there_are_no_tuned_coefficients(monkeypatch):
-    """And only there, and not to a line that says which corrector it has."""
+    """It is added only there, and not to a line that states its corrector."""
     table = dict(keywords.table())
     sets = "4 to 12 (second), 3 to 8 (first), 6 8 (second, tuned), 5 (first, tuned)"
     table["values"] = replace(table["values"], values=sets)
@@ -178,7 +178,7 @@ def test_corrector_gear_is_added_where_there_are_no_tuned_coefficients(monkeypat
 
 
 def test_what_is_left_out_is_said():
-    """And what only writes is not worth a word."""
+    """Commands that only write are not mentioned."""
     said = {
         "fix 1 a rigid/small molecule mol w": "keyword mol is left out; no atoms are added",
         "fix 1 a rigid single dilate all": "keyword dilate is left out; it acts with a barostat",

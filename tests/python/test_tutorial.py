@@ -20,7 +20,7 @@ MODULES = re.findall(r"^\.\. currentmodule:: (\S+)$", API, re.M)
 
 @pytest.fixture(scope="module")
 def tutorial(tmp_path_factory):
-    """The folder that the notebook was run in."""
+    """The folder in which the notebook was run."""
     folder = tmp_path_factory.mktemp("tutorial")
     notebook = nbformat.read(ROOT / "doc" / "tutorial.ipynb", as_version=4)
     assert not any(cell.get("outputs") for cell in notebook.cells), "outputs belong to the site, not to the repository"
@@ -32,7 +32,7 @@ def tutorial(tmp_path_factory):
 
 def test_the_notebook_runs(tutorial):
     with open(tutorial / "gearquat-analyze" / "averages.csv", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["value"]]  # some may be left out
+        rows = [row for row in csv.DictReader(file) if row["value"]]  # some averages may be left out
     found = {row["average"]: (float(row["value"]), float(row["standard error"])) for row in rows}
     (translation, error), (rotation, other) = (found[f"temperature of {kind}"] for kind in ("translation", "rotation"))
     combined = (error**2 + other**2) ** 0.5
@@ -52,7 +52,7 @@ def test_examples_of_the_interface(tutorial, monkeypatch, name):
 
 
 def test_every_class_has_an_example():
-    """And every function and class is on the page or is a part of one that is."""
+    """Every function and class is on the page, or is part of an item on the page."""
     listed = set(re.findall(r"^\.\. auto(?:class|function|exception):: (\w+)$", API, re.M))
     for name in MODULES:
         module = importlib.import_module(name)

@@ -1,5 +1,5 @@
-"""The patches for LAMMPS' core in doc/upstream: each applies to its release, and the fix finds what it adds, and no
-more than that. The newest release is tested where its sources are: `tests/run upstream` and `versions` fetch them."""
+"""The patches for LAMMPS' core in doc/upstream: each applies to its release, and the fix detects exactly the members
+that it adds. The newest release is tested where its sources are: `tests/run upstream` and `versions` fetch them."""
 
 import contextlib
 import os
@@ -74,7 +74,7 @@ def release(request) -> str:
 
 @pytest.fixture(scope="module")
 def source(release) -> Path:
-    """LAMMPS as the patch knows it."""
+    """The LAMMPS of the patch."""
     if release not in SOURCES:
         pytest.fail(f"no sources of LAMMPS {release}: run `tests/run build`")
     return SOURCES[release]
@@ -128,7 +128,7 @@ def test_the_compiler_finds_what_it_adds(source, tree, patch):
 
 
 def test_every_run_style_from_verlet_says_whether_it_has_it(source, tree, patch):
-    """A run style that is derived from Verlet has forces of its own, and would inherit the flag."""
+    """A run style that is derived from Verlet evaluates forces differently, and would inherit the flag."""
     apply(tree, patch)
     derived = [path for path in (source / "src").glob("*/*.h") if re.search(r": public Verlet\b", path.read_text())]
     assert len(derived) >= 3

@@ -68,7 +68,7 @@ def test_molecules_are_rigid(water):
 
 
 def kinetic_energy(v):
-    """Of all sites, kcal/mol."""
+    """The kinetic energy of all sites, kcal/mol."""
     return 0.5 * ENERGY * (MASS[:, None] * v**2).sum()
 
 
@@ -121,7 +121,7 @@ def potential_energy(water, forces, factor=1.0):
 
 @pytest.mark.parametrize("forces", ["smooth", "plain"])
 def test_initial_energy(lmp_wheel, water, forces):
-    """Independent sums, for every method."""
+    """The sums are independent, for every method."""
     potential, kinetic = potential_energy(water, forces), kinetic_energy(water.v)
     for method in ("gear", "rigid", "rigid_big", "rigid_verlet"):
         variables = {"forces": forces, "method": method, "steps": 0}
@@ -191,7 +191,7 @@ def order(lmp, forces, values):
 
 
 def test_smooth_forces_keep_the_order(lmp_wheel):
-    """Six rows have order 5 for rotating bodies, eight have 7; a plain cut-off leaves little."""
+    """Six rows have order 5 for rotating bodies, and eight rows have order 7; with a plain cut-off the order is low."""
     assert order(lmp_wheel, "smooth", 6) > 4.5
     assert order(lmp_wheel, "smooth", 8) > 6.0
     assert order(lmp_wheel, "plain", 6) < 3.0

@@ -1,4 +1,4 @@
-"""GEARQUAT as a pull request to LAMMPS: a patch that ``git am`` takes, and the text that goes with it.
+"""GEARQUAT as a pull request to LAMMPS: a patch for ``git am``, and the accompanying text.
 
     tests/run patch [--author "NAME (AFFILIATION)"] [--email ADDRESS]
 
@@ -29,7 +29,7 @@ from running import ROOT
 PACKAGE = ROOT / "src" / "GEARQUAT"
 SUMMARY = "accurate motion of rigid bodies"
 
-#: what LAMMPS asks to stand at the head of every source
+#: the notice that LAMMPS requires at the beginning of every source file
 NOTICE = """\
 /* {mode:-<70}
    LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
@@ -204,7 +204,7 @@ def manual_page() -> str:
 
 
 def package_readme(author: str, email: str) -> str:
-    """That of the package, where the package is one of LAMMPS' own."""
+    """The README of the package if it is one of LAMMPS' packages."""
     text = (PACKAGE / "README").read_text()
     before, build, after = re.match(r"(.*\nHow to build\n\n)(.*?)(Contents\n.*)", text, re.S).groups()
     assert "STANDARD_PACKAGES" in build
@@ -218,7 +218,7 @@ def package_readme(author: str, email: str) -> str:
 
 
 def examples_readme(folder: Path) -> str:
-    """That of the examples, about the folders that are copied and nothing else."""
+    """The README of the examples, about the copied folders only."""
     text = without_paragraphs(
         (ROOT / "examples" / "README").read_text(), "tests/run logs", "make_scenes.py write"
     )
@@ -237,7 +237,7 @@ def without_benchmarks(text: str) -> str:
 
 
 def new_files(tree: Path, author: str, email: str) -> None:
-    """Everything that LAMMPS does not have yet."""
+    """All files that LAMMPS does not have yet."""
     package = tree / "src" / "GEARQUAT"
     package.mkdir(parents=True)
     for source in (*PACKAGE.glob("*.h"), *PACKAGE.glob("*.cpp")):
@@ -257,7 +257,7 @@ def new_files(tree: Path, author: str, email: str) -> None:
 
 
 def git(folder: Path, *words: str) -> str:
-    """Runs git without anybody's settings."""
+    """Runs git without personal settings."""
     identity = ["-c", "user.name=AUTHOR", "-c", "user.email=EMAIL", "-c", "core.autocrlf=false"]
     done = subprocess.run(["git", "-C", folder, *identity, *words], capture_output=True, text=True)
     if done.returncode != 0:

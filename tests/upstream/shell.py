@@ -10,11 +10,11 @@ CORES = str(len(os.sched_getaffinity(0)))
 
 
 def do(where: Path, lines: str, **environment: str) -> str:
-    """Runs lines of shell, which must succeed; what they said."""
+    """Runs lines of shell, which must succeed, and returns their output."""
     done = subprocess.run(
         ["bash", "-e", "-c", lines],
         cwd=where,
-        # objects are found again whatever the folder is called
+        # cached objects are found for any name of the folder
         env={**os.environ, "CCACHE_BASEDIR": str(where), "CCACHE_NOHASHDIR": "1", **environment},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,

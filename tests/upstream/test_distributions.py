@@ -1,6 +1,6 @@
 """The distributions for pip: a wheel and a source distribution, each in a fresh environment.
 
-Minutes, most of them pip's; `tests/run upstream` runs it.
+These tests take minutes, mostly for pip; `tests/run upstream` runs them.
 """
 
 from __future__ import annotations

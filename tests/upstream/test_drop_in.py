@@ -1,6 +1,6 @@
 """GEARQUAT as one of LAMMPS' packages: way (b) of the page about installing, by CMake and by the traditional make.
 
-Whole builds of LAMMPS without optimization, minutes each; `tests/run upstream` runs them.
+These tests build LAMMPS without optimization, which takes minutes each; `tests/run upstream` runs them.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ INSTALL = (ROOT / "doc" / "install.md").read_text()
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """As the page has it: this repository in ``gearquat``, a LAMMPS tree in ``lammps``."""
+    """The folders of the page: this repository in ``gearquat``, a LAMMPS tree in ``lammps``."""
     (tmp_path / "gearquat").symlink_to(ROOT)
     source, tree = tree_source(), tmp_path / "lammps"
     tree.mkdir()
     for part in source.iterdir():
-        if part.name in ("src", "cmake"):  # what is edited
+        if part.name in ("src", "cmake"):  # the edited file
             shutil.copytree(part, tree / part.name)
         else:
             (tree / part.name).symlink_to(part)

@@ -53,7 +53,7 @@ def tree(release: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def docenv(release: Path) -> Path:
     """The environment for building LAMMPS' manual; kept in build, since it takes minutes."""
     utils, folder = release / "doc" / "utils", ROOT / "build" / "upstream" / "docenv"
-    # LAMMPS takes sphinx-fortran from a branch on GitHub; the released one reads in one process
+    # LAMMPS takes sphinx-fortran from a branch on GitHub; the released version reads in one process
     wanted = [line for line in (utils / "requirements.txt").read_text().splitlines() if "git+" not in line]
     wanted += ["sphinx-fortran", "setuptools<80"]
     stamp = folder / "requirements.txt"
