@@ -172,7 +172,7 @@ struct Keyword {
     return *this;
   }
 
-  /// Of the formulation, where there are two.
+  /// The range for a formulation, if there are two ranges.
   const Range &range(bool first) const { return ranges[first ? ranges.size() - 1 : 0]; }
 
   /// The default of a WORD.
@@ -193,7 +193,7 @@ struct Keyword {
   int read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const;
   /// The words required, as in a sentence: "no, short or long", "1 to 100", "M xflag yflag zflag".
   std::string required() const;
-  /// The same, with the values that depend on other keywords.
+  /// The words required, with the values that depend on other keywords.
   std::string possible_values() const;
 };
 

@@ -112,7 +112,7 @@ void Assembly::unwrapped(int part, int i, double *x) const
   if (!(way < certain)) undo_image_flag_overflow(domain, first, x);
 }
 
-/// From the center of mass to a site; zero if the site is there up to rounding.
+/// The vector from the center of mass to a site; zero if the two coincide up to rounding.
 void Assembly::find_arm(const double *x, const double *center, double *arm) const
 {
   for (int k = 0; k < 3; ++k) arm[k] = x[k] - center[k];
@@ -151,7 +151,7 @@ double Assembly::scale_of(int part, double bound) const
   return ExactSum::scale_of(bound * std::max(1.0, (double) sizes[part].natoms / MANY));
 }
 
-/// The same for terms that are proportional to the mass.
+/// The unit of a sum whose terms are proportional to the mass.
 double Assembly::unit_of(int part, double bound) const
 {
   return scale_of(part, sizes[part].mass * bound);

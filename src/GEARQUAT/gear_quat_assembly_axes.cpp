@@ -133,7 +133,7 @@ void Assembly::direct(double *axes, const Sides &sides)
    invalid bodies
 ------------------------------------------------------------------------- */
 
-/// In the order of Assembly's faults; the first one found is reported.
+/// Texts in the order of Assembly's faults; the first fault found is reported.
 static const char *const FAULT_TEXTS[] = {
     "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to more than zero",
     "Fix gear/quat: inertia or velocities of body {} are not finite numbers",

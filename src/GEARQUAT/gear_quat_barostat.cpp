@@ -21,7 +21,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-/// Without temp, a thermostat without chains, with the temperature for the box's mass.
+/// Without temp: words of a thermostat without chains, with the temperature for the box's mass.
 static ThermostatWords words_of(const ThermostatWords &words, const PressureWords &pressure)
 {
   if (words.damp > 0.0) return words;
@@ -73,7 +73,7 @@ double Barostat::dimensions() const
   return domain->dimension;
 }
 
-/// b of the trace term.
+/// The weight b of the trace term.
 double Barostat::weight_of(int direction) const
 {
   const int d = domain->dimension;
@@ -93,7 +93,7 @@ double Barostat::mass_of(int component) const
   return (freedoms[TRANSLATION] + d) * kt * period * period / d;
 }
 
-/// For the components that move, 0 for others.
+/// Masses of the components that move, 0 for others.
 Upper Barostat::masses() const
 {
   Upper found;
@@ -414,7 +414,7 @@ void Barostat::put_back()
   box.set(cell.matrix());
 }
 
-/// As a length, the displacement at the faces of the box; as an energy, its work.
+/// The error as a length is the displacement at the faces of the box; as an energy, its work.
 void Barostat::errors(const VariableOrder &order, double h, int values,
                       const Include &include) const
 {

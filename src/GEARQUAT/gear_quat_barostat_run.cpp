@@ -71,7 +71,7 @@ void Barostat::refuse_scene() const
                    "than half a period steps take longer");
 }
 
-/// Without temp and ptemp, the temperature of the bodies when the box starts to move.
+/// Without temp and ptemp, uses the temperature of the bodies when the box starts to move.
 void Barostat::find_temperature()
 {
   if (acts() || words.start > 0.0) return;

@@ -124,7 +124,7 @@ struct Fastest {
   }
 };
 
-/// Over all ranks; returns its ID, 0 if there is none.  Collective.
+/// Finds the body over all ranks; returns its ID, 0 if there is none.  Collective.
 tagint find_lost(LAMMPS *lmp, const Scheme &scheme, const Fastest &fastest, double h, Lost &lost)
 {
   const double omega = over_ranks(MPI_MAX, fastest.omega, lmp->world);

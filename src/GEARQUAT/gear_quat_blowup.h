@@ -51,18 +51,18 @@ class Blowup : protected Pointers {
   {
   }
 
-  /// At the beginning of a run, as pace_of() finds it.
+  /// Speed of the motion at the beginning of a run, from pace_of().
   Pace pace;
-  /// If it is unstable, it became so before the bodies; may be null.
+  /// If the coupling is unstable, it became unstable before the bodies; may be null.
   const Coupling *coupling = nullptr;
 
-  /// Of the present step and box.
+  /// The limits for the current step and box.
   MotionLimits limits;
 
   /// Ends the run if the present loads would make an owned body unstable within a step h.  Atoms
   /// are at the positions of the loads; f: forces on them.
   void check_loads(double h, double **f) const;
-  /// The same for one body.
+  /// Ends the run if the present load would make this body unstable within a step h.
   void check_load(int ibody, double h, double **f) const;
   /// Ends the run on all ranks, called by the rank that owns the body (for a large one, by all of
   /// them together).  The message gives step, time, body, its site nearest to another atom (or one

@@ -91,7 +91,7 @@ class Bodies {
   Load acting(int ibody) const { return acting_load(load[ibody], body[ibody].off); }
   /// The rotation matrix space -> body of the state, as of the last update of the frame.
   const double *axes(int ibody) const { return frame[ibody].axes; }
-  /// Only for bodies that this rank moves.
+  /// The history of a body; only for bodies that this rank moves.
   double *history(int ibody) { return rows.data() + (size_t) ibody * row_size; }
   const double *history(int ibody) const { return rows.data() + (size_t) ibody * row_size; }
   /// Doubles of a history; with a trial row, including the saved copy.

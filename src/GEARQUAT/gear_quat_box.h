@@ -71,7 +71,7 @@ class Box : protected Pointers {
     inverse.times(velocity, s.velocity);
   }
 
-  /// For restart files: the reference and the fixed point.
+  /// The reference and the fixed point, for restart files.
   static constexpr int NUMBERS = 15;
   using Record = std::array<double, NUMBERS>;
   Record record() const;
@@ -79,7 +79,7 @@ class Box : protected Pointers {
 
  private:
   std::vector<double> fixed;
-  /// As Domain::h, followed by boxlo and boxhi.
+  /// The reference box: h as in Domain::h, followed by boxlo and boxhi.
   std::array<double, 12> reference = {};
   double origin[3] = {};
   std::array<double, 9> shown = {};    ///< as Domain::h, followed by boxlo

@@ -91,7 +91,7 @@ class Chain {
 
   /// Number of variables: xi and S.
   int size() const { return length + 1; }
-  /// In the present pass.
+  /// The friction xi_1, and all variables, in the current pass.
   double friction() const { return now[0]; }
   const Variables &values() const { return now; }
 
@@ -104,8 +104,8 @@ class Chain {
     int substeps;    ///< GIVEN_UP: y is not the solution
   };
 
-  /// At the time `until`, in units of the step h, of either sign.  target: at the beginning of the
-  /// step.  Without degrees of freedom the variables are constant.
+  /// The variables at the time `until`, in units of the step h, of either sign.  target: at the
+  /// beginning of the step.  Without degrees of freedom the variables are constant.
   Flow flow(const ChainTarget &target, const ChainDrive &drive, double h, double until) const
   {
     Flow found = {begun, 0};
@@ -263,7 +263,7 @@ class Chain {
     double known;
     std::array<double, MOST_SUMS> sums, ages;
 
-    /// As numbers of a file: how many sums there are, and each sum with its age.
+    /// Appends the sums as numbers of a file: how many there are, and each sum with its age.
     void append_sums(std::vector<double> &numbers) const
     {
       numbers.push_back(known);

@@ -90,7 +90,7 @@ class Coupling : protected Pointers {
 
   /// Computes friction and rates from the present states and loads.
   virtual void measure() = 0;
-  /// After measure(): the load on a body, including the friction.  Local.
+  /// The load on a body, including the friction; to be called after measure().  Local.
   virtual Load acting(int ibody) const = 0;
   /// Histories and states from predicted to corrected ones.
   virtual void correct(const Integrator &integrator, int passes) = 0;
@@ -120,12 +120,12 @@ class Coupling : protected Pointers {
 
   virtual void begin_start(const StartNodes &nodes) = 0;
   virtual void foretell(const StartNodes &nodes) = 0;    ///< local
-  /// As measure(), for the states and loads of a node.
+  /// Computes friction and rates from the states and loads of a node, like measure().
   virtual void visit_node(const StartNodes &nodes, int node) = 0;
   virtual void settle(const StartNodes &nodes, int pair) = 0;    ///< local
-  /// From the innermost `pairs`.  values: of the method.  Local.
+  /// Makes histories from the innermost `pairs`. values: of the method.  Local.
   virtual void seed(const StartNodes &nodes, int pairs, int values) = 0;
-  /// From the present alone, after measure(); the histories of bodies have `terms` terms.
+  /// Makes histories from the present alone, after measure(); those of bodies have `terms` terms.
   virtual void seed_local(double h, int terms) = 0;
   // With a moving box: refer_to_box() resets its histories; enter_node() sets the box of a node and
   // unscales the states, whose centers are scaled; leave_nodes() restores the box of the start.
@@ -152,7 +152,7 @@ class Coupling : protected Pointers {
 
   // restart files
 
-  /// Its sections, the same on all ranks.  Local.
+  /// Writes the sections of the coupling, the same on all ranks.  Local.
   virtual void write(Sections &file) const = 0;
   /// Reads the sections of the same kind of coupling.  Returns the items missing in the file, or an
   /// empty text.  Local.

@@ -197,7 +197,7 @@ std::vector<DrivenBox::Vector> DrivenBox::present_images()
   return found;
 }
 
-/// At the beginning or end of a run, or after a discontinuity of the box.
+/// Follows the box at the beginning or end of a run, or after a discontinuity of the box.
 void DrivenBox::follow()
 {
   if (driven) follow(domain->h, domain->boxlo);
@@ -214,7 +214,7 @@ void DrivenBox::begin_step()
   if (!cell->remaps_atoms()) follow(then.h.data(), then.h.data() + 6);
 }
 
-/// To the box h with this corner.
+/// Follows the change to the box h with this corner.
 void DrivenBox::follow(const double *h, const double *corner)
 {
   const auto &box = ownership.box();

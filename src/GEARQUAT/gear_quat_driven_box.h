@@ -54,15 +54,15 @@ class DrivenBox : protected Pointers {
   void end_remap();
   /// Called when a step has ended and sites are placed.
   void end_step();
-  /// The box may have changed without a remap.  Collective.
+  /// Called when the box may have changed without a remap.  Collective.
   void follow();
-  /// The same before a step.
+  /// Called before a step, for the same changes of the box.
   void begin_step();
   /// Before atoms are wrapped and exchanged in a step: fix deform remap v.  Collective.
   void meet_faces() { pass_faces(); }
-  /// The same in LAMMPS' setup, where atoms get the velocities of bodies again.  Collective.
+  /// Called in LAMMPS' setup, where atoms get the velocities of bodies again.  Collective.
   void pass_faces_before_run();
-  /// Sites are placed in the last box.  Collective.
+  /// Called at the end of a run, when sites are placed in the last box.  Collective.
   void end_run();
 
  private:

@@ -20,7 +20,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-/// Without temp, a thermostat without chains, whose temperature only scales sums.
+/// Without temp: words of a thermostat without chains, whose temperature only scales sums.
 static ThermostatWords words_of(const ThermostatWords &words)
 {
   if (words.damp > 0.0) return words;

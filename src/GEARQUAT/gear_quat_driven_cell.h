@@ -29,7 +29,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class DrivenCell : public Thermostat {
  public:
-  /// As Domain::h, followed by boxlo.
+  /// A box: h as in Domain::h, and boxlo.
   struct Cell {
     std::array<double, 9> h = {};
 

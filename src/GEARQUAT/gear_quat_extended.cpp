@@ -226,7 +226,7 @@ void Extended::add_torques(double **torque, std::vector<Load> &loads) const
     for (int k = first; k < 3; ++k) loads[site.body].torque_space[k] += torque[site.atom][k];
 }
 
-/// Equal up to rounding: vectors relative to their length.
+/// True if two vectors are equal up to rounding, relative to their length.
 static bool same(const double *a, const double *b, int n)
 {
   double largest = 0.0, difference = 0.0;

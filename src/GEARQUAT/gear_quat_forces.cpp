@@ -256,7 +256,7 @@ void Forces::evaluate_styles(int eflag, int vflag)
   if (force->newton) comm->reverse_comm();
 }
 
-/// For the fixes alone.
+/// Clears the forces before fixes are evaluated alone.
 void Forces::clear_owned()
 {
   const size_t n = 3 * (size_t) atom->nlocal;

@@ -128,7 +128,7 @@ class RespaForces : protected Pointers {
   static std::vector<double> steps(LAMMPS *lmp);
   /// True for the level that begins and ends a step.
   bool outermost(int level) const;
-  /// Before a step: the sum over the levels of their latest forces, including all fixes.
+  /// Called before a step: sums the latest forces of all levels, including all fixes.
   void sum_present();
   /// The forces, and torques where atoms have some, of one level; level 0 begins a sum.
   void add(int level);

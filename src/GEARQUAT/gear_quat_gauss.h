@@ -50,7 +50,7 @@ struct KineticSums {
   }
 };
 
-/// Of momenta and of angular momenta, 1/time or without unit.
+/// Multipliers of momenta and of angular momenta, in 1/time or without unit.
 struct Multipliers {
   double translation = 0.0;
   double rotation = 0.0;

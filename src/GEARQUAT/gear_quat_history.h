@@ -168,7 +168,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
     }
   }
 
-  /// The same polynomial for another step: ratio = new step / old step.
+  /// Rescales the polynomial for another step: ratio = new step / old step.
   static void rescale(double *rows, int n, double ratio)
   {
     double factor = 1.0;
@@ -245,7 +245,7 @@ class Kinematics {
     return state;
   }
 
-  /// The same with the frame of this state.
+  /// Pose and velocities, and the frame of this state.
   void body_state(const RigidBody &body, const double *rows, BodyState &state,
                   BodyFrame &frame) const
   {

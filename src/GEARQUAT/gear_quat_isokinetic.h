@@ -27,7 +27,7 @@ class IsokineticConstraint : public Coupling {
   IsokineticConstraint(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme, Isokinetic mode,
                        bool rescale);
 
-  /// Without histories the present kinetic energy is the one to be conserved.
+  /// Without histories, the present kinetic energy becomes the conserved kinetic energy.
   void begin_run(bool anew, double h) override;
   bool may_start_anew() const override { return false; }
 

@@ -89,7 +89,7 @@ const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name, cons
                   utils::join_words(names, ", "));
 }
 
-/// In brackets, with the formulation if there are two ranges.
+/// A text in brackets, with the formulation if there are two ranges.
 template <typename Text> static std::string of_formulations(const Keyword &row, Text text)
 {
   if (row.ranges.size() == 1) return text(row.ranges[0]);

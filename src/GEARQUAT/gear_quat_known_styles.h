@@ -99,7 +99,7 @@ struct ActOnAtoms {
   const char *reason;
   const char *instead;    ///< an alternative that is suitable for bodies
 };
-/// Null for a fix without such an effect, as far as is known.
+/// The effect of a fix on atoms, null if the fix is not known to have such an effect.
 const ActOnAtoms *act_on_atoms(const Fix *fix);
 
 }    // namespace LAMMPS_NS::GearQuat

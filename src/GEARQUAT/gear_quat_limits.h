@@ -164,7 +164,7 @@ inline double noise_gain(const Scheme &scheme, const CorrectorCoefficients &c)
   return gain;
 }
 
-/// With the coefficients of the scheme.
+/// The noise gain with the coefficients of the scheme.
 inline double noise_gain(const Scheme &scheme)
 {
   return noise_gain(scheme, CorrectorCoefficients(scheme));

@@ -294,7 +294,7 @@ inline void torque_along_axes(const double *q, double norm2, const Load &load, d
   to_body(a, load.torque_space, torque_body);
 }
 
-/// The same acceleration of a body in a state under a load.
+/// The angular acceleration of a body in a state under a load.
 inline void angular_acceleration(const RigidBody &body, const BodyState &state, double norm2,
                                  const Load &load, double *omegadot_body)
 {

@@ -33,7 +33,7 @@ class Minimization : protected Pointers {
 
   /// Ends the run if the minimizer cannot move bodies.
   void init();
-  /// Between init() and end().
+  /// True between init() and end().
   bool is_on() const { return on; }
   /// Called when bodies were made or atoms exchanged.  Collective.
   void measure();
@@ -42,8 +42,8 @@ class Minimization : protected Pointers {
   void check_loads();
   /// Moves bodies to their atoms, and atoms to their positions, except ghosts.  Collective.
   void fit();
-  /// The same before forces are evaluated, with ghosts, unless fit() was called after the last
-  /// evaluation.
+  /// Moves bodies, atoms and ghosts before forces are evaluated, unless fit() was called after the
+  /// last evaluation.
   void fit_all();
   /// Projects the forces f on atoms of bodies onto rigid motions.  Collective.
   void project(double **f);

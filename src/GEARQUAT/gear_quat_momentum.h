@@ -49,7 +49,7 @@ class TotalMomentum : protected Pointers {
   /// Counts and masses of the bodies by direction.  Collective.
   void weigh();
 
-  /// Before the sums of a step.  kt: of the thermostat.
+  /// Called before the sums of a step. kt: of the thermostat.
   void begin_sums(double kt);
   /// The force in the predicted rows of an owned body, in a step.
   void add_predicted(int ibody, const double *force);

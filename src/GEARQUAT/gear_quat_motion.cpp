@@ -221,7 +221,7 @@ bool Motion::can_start_anew() const
       forces_can_be_followed();
 }
 
-/// By a start of full order, for all fixes together.
+/// True if a start of full order can follow the forces, for all fixes together.
 bool Motion::forces_can_be_followed() const
 {
   std::vector<const Fix *> owners;

@@ -27,13 +27,14 @@ class Motion : protected Pointers {
 
   /// The store has made its bodies; sets their masks.  Collective.
   void meet_bodies();
-  /// Before a run.  Ends it if the simulation does not allow a changing time step.  Collective.
+  /// Called before a run; ends it if the simulation does not allow a changing time step.
+  /// Collective.
   void init();
   /// Discards the histories.  Rank 0 prints the reason if there are any.
   void forget(const std::string &why);
   /// Replaces the masks of a restart file by the masks of the command.  Collective.
   void impose_masks();
-  /// Before the first step, whose poses, velocities and loads are present.  Collective.
+  /// Called before the first step, when its poses, velocities and loads are present.  Collective.
   void begin_run();
   /// True if degrees of freedom depend on forces that LAMMPS' setup may not have evaluated yet.
   bool awaits_forces() const { return set_up && step.coupling && step.coupling->awaits_forces(); }

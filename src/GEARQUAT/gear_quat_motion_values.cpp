@@ -100,7 +100,7 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
                  other_corrector ? " and corrector gear" : "", why);
 }
 
-/// Once, and again if only a much shorter step is short enough.
+/// Warns once, and again if only a much shorter step is short enough.
 void Motion::warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins)
 {
   const double advised = std::fabs(step.length()) * scene.advised_part(scheme);
@@ -128,7 +128,7 @@ void Motion::look_at_vibrations()
     warn_of_values(scene);
 }
 
-/// Once for the histories, which keep their number of values.
+/// Warns once for these histories, which keep their number of values.
 void Motion::warn_of_values(const ChoiceOfValues &scene)
 {
   const int present = step.scheme().values();

@@ -20,7 +20,7 @@ struct Arms {
   double sum[3];
   double products[9];    ///< sum of d_a d_b, row-major, lengths squared
 
-  /// The same for a body with these axes (space -> body), if the sums are along its axes.
+  /// The sums in space for a body with these axes (space -> body), from sums along its axes.
   Arms in_space(const double *axes) const
   {
     Arms out = {number, {}, {}};

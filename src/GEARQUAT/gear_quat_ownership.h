@@ -62,9 +62,9 @@ class Ownership : protected Pointers {
   int owned_by(int atom) const { return owned[atom]; }
   /// The local index of the owner atom of an owned body.
   int owner_of(int ibody) const { return owner_atom[ibody]; }
-  /// For each atom the atom ID of the owner of its body, 0 for none; owned atoms come first.
+  /// The atom ID of the owner of each atom's body, 0 for none; owned atoms come first.
   const std::vector<tagint> &owner_tags() const { return owner_tag; }
-  /// From the center of mass of its body, along the principal axes.
+  /// The vector from the center of mass of the body to an atom, along the principal axes.
   const double *arm_of(int atom) const { return arm[atom].data(); }
   double mass_of(int atom) const;
   /// An atom of the fix group was created or, with -1, added to a body: it belongs to no body yet.
@@ -131,7 +131,7 @@ class Ownership : protected Pointers {
   // a step
 
   void spread_states();
-  /// The same if the frames of all bodies that this rank moves match their states.
+  /// Like spread_states(), if the frames of all bodies that this rank moves match their states.
   void spread_moved();
   /// loads: for each body, from this rank's atoms.  Sums them over all ranks for bodies that this
   /// rank moves.

@@ -202,7 +202,7 @@ int Ownership::pack_reverse(int n, int first, double *buf)
   return m;
 }
 
-/// Both are summed.
+/// Adds labels and loads of ghosts to those of their owners.
 void Ownership::unpack_reverse(int n, const int *list, const double *buf)
 {
   if (labels) {
@@ -272,7 +272,7 @@ void Ownership::pack_large()
   }
 }
 
-/// The same from their owners.  Collective.
+/// Gathers large bodies from their owners on all ranks.  Collective.
 void Ownership::gather_large()
 {
   std::vector<double> mine;

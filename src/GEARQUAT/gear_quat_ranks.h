@@ -97,7 +97,7 @@ std::vector<T> gather(std::vector<T> &mine, MPI_Comm world, int root = EVERY_RAN
   return all;
 }
 
-/// The same, sorted.
+/// The gathered items, sorted.
 template <typename T, class Before = std::less<T>>
 std::vector<T> gather_sorted(std::vector<T> &mine, MPI_Comm world, Before before = Before(),
                              int root = EVERY_RANK)

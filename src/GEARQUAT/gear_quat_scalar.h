@@ -38,7 +38,7 @@ class ScalarHistory {
 
   /// Advances to the end of the step, where y' = rate.
   void advance(const Integrator &integrator, double rate) { integrator.advance(rows.data(), rate); }
-  /// With the coefficients of a first-order equation.
+  /// One step with the coefficients of a first-order equation.
   void advance(const double *coefficients, int values, double h, double rate)
   {
     Nordsieck<1>::predict(rows.data(), values);
@@ -46,7 +46,7 @@ class ScalarHistory {
     Nordsieck<1>::correct<1>(rows.data(), values, coefficients, 0, &residual);
   }
 
-  /// For restart files.
+  /// The rows, for restart files.
   const Rows &record() const { return rows; }
   void restore(const Rows &saved) { rows = saved; }
 

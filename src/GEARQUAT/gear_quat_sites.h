@@ -87,7 +87,7 @@ class Sites : protected Pointers {
   /// Loads of all bodies that this rank moves, from the forces on the sites of all ranks.  torque:
   /// of the atoms themselves, used for extended atoms; null for none.
   void gather_loads(double **f, double **torque);
-  /// The same for the momenta due to differences between velocities of atoms and their bodies.
+  /// Sums the momenta due to differences between velocities of atoms and their bodies, as loads.
   void gather_impulses();
 
   /// Adds the products of forces on owned sites and their arms, f_a d_b for xx yy zz yz xz xy: as

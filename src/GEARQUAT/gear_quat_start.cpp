@@ -338,7 +338,7 @@ double Start::first_spacing() const
   return way > reach ? h * reach / way : h;
 }
 
-/// From the derivatives of this number of pairs, with the states of the start.
+/// Sums from the derivatives of this number of pairs, with the states of the start.
 MotionSums Start::sums_of(const Starter &one, const Bodies::Snapshot &snapshot, int pairs,
                           double spacing) const
 {

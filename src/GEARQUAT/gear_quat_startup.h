@@ -290,7 +290,7 @@ class Collocation {
     }
   }
 
-  /// The same for any functions: their values, first and second derivatives.
+  /// Begins for any functions: their values, first and second derivatives.
   template <int WIDTH>
   void begin(const double *value, const double *first, const double *second,
              Nodes<WIDTH, 2> &w) const
@@ -373,9 +373,9 @@ class Collocation {
     return relative(change, met, length, w);
   }
 
-  /// The same for a scalar.
+  /// Stores the rate of a scalar at a node.
   void set_rate(int node, double rate, Scalar &s) const { set_rates(node, &rate, s); }
-  /// The same for any functions.
+  /// Stores the rates of any functions at a node.
   template <int WIDTH, int ORDER>
   void set_rates(int node, const double *rates, Nodes<WIDTH, ORDER> &w) const
   {
@@ -403,7 +403,7 @@ class Collocation {
     expand(w, pairs, series.c[0]);
     return series;
   }
-  /// The same for any functions: c[WIDTH * j + i] for term j of function i.
+  /// The series of any functions: c[WIDTH * j + i] for term j of function i.
   template <int WIDTH> void expand(const Nodes<WIDTH, 2> &w, int pairs, double *c) const
   {
     for (int i = 0; i < WIDTH; ++i) {
@@ -417,8 +417,8 @@ class Collocation {
   static int terms_of(int pairs) { return 2 * pairs + 3; }
   TaylorSeries series(const Workspace &w) const { return series(w, w.pairs); }
 
-  /// The same for a scalar whose rates are per unit of time, with `spacing` between nodes.  Returns
-  /// the number of terms, at most MAX_NODES + 1.
+  /// The series of a scalar whose rates are per unit of time, with `spacing` between nodes.
+  /// Returns the number of terms, at most MAX_NODES + 1.
   int series(const Scalar &s, int pairs, double spacing, double *c) const
   {
     c[0] = s.start[0][0];

@@ -49,7 +49,7 @@ class Step : protected Pointers {
   void begin(int vflag, double **f);
   /// f, torque: of the predicted sites.  Collective.
   void end(double **f, double **torque);
-  /// With keyword tolerance only.  Collective.
+  /// Chooses the next step; with keyword tolerance only.  Collective.
   void choose_next();
 
   /// Loads of bodies from the forces on atoms that LAMMPS has just evaluated.  Collective.
@@ -85,7 +85,7 @@ class Step : protected Pointers {
 
   const Scheme &scheme() const { return tolerance ? tolerance->scheme() : present; }
   double length() const { return time_step.length(); }
-  /// Null before the first run.
+  /// The current integrator, null before the first run.
   const Integrator *present_integrator() const { return integrator.get(); }
   /// The load on a body; with a coupling after its measure().
   Load acting(int ibody) const { return acting_on(bodies, coupling.get(), ibody); }

@@ -100,7 +100,7 @@ Friction Thermostat::friction_of(int ibody) const
   return found;
 }
 
-/// Scale of kinetic energies: the same in all steps with one target.
+/// Scale of kinetic energies, which is the same in all steps with one target.
 double Thermostat::scale() const
 {
   return ExactSum::scale_of(std::max(1.0, freedoms[TRANSLATION] + freedoms[ROTATION]) * line.kt);

@@ -57,7 +57,7 @@ class Thermostat : public Coupling {
   /// if nothing that could be thermostatted moves.
   void begin_steps(bool begins) override;
   void end_run() override { tell_freedoms(); }
-  /// If the target, or a degree of freedom, has changed since the steps before this run.
+  /// A reason if the target or the degrees of freedom have changed since the last run.
   const char *reason_to_start_anew() const override;
 
   /// Also computes the rates of the chains.
@@ -95,7 +95,7 @@ class Thermostat : public Coupling {
   double energy() const override;
 
   void write(Sections &file) const override;
-  /// From a file with as many chains of as many variables.
+  /// Reads a file with the same number of chains and of variables.
   std::string read(const Sections &file) override;
 
  protected:
@@ -145,7 +145,7 @@ class Thermostat : public Coupling {
   double twice_of(int chain) const;
   double freedoms_of(int chain) const;
   bool is_thermostatted(int ibody, Part part, int component = 0) const;
-  /// Of a body without masks, in the present pass.
+  /// The friction of a body without masks, in the current pass.
   Friction of_all;
   Friction friction_of(int ibody) const;
   Setting setting() const;

@@ -118,7 +118,7 @@ void Thermostat::follow_changes(double h)
    before a run
 ------------------------------------------------------------------------- */
 
-/// Of the last completed step.
+/// The setting of the last completed step.
 Thermostat::Setting Thermostat::setting() const
 {
   if (waiting) return made;

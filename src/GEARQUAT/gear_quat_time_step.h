@@ -20,11 +20,11 @@ class TimeStep : protected Pointers {
  public:
   explicit TimeStep(LAMMPS *lmp) : Pointers(lmp) {}
 
-  /// Of the histories; 0 before the first run.
+  /// The length of the step in histories; 0 before the first run.
   double length() const { return h; }
-  /// Of the last completed step; 0 before the first one.
+  /// The length of the last completed step; 0 before the first step.
   double made() const { return last; }
-  /// A step of this length begins.
+  /// Called when a step of this length begins.
   void begin() { last = h; }
   /// Adopts LAMMPS' step for the histories.  Returns the ratio of new to old length, 0 for no
   /// change; infinite if there was none.
@@ -34,7 +34,7 @@ class TimeStep : protected Pointers {
 
   // LAMMPS' step, and dependent quantities in other fixes and in this one
 
-  /// After the present step.
+  /// Changes the length after the current step.
   void change(double step);
   /// Changes the present step, which has begun with another length: the time so far consists of the
   /// steps before it.
@@ -46,7 +46,7 @@ class TimeStep : protected Pointers {
   double beginning() const;
   double end() const;
 
-  /// Of a restart file.
+  /// Sets the length from a restart file.
   void restore(double saved) { h = last = saved; }
 
  private:

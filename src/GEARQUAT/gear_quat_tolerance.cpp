@@ -189,7 +189,7 @@ void Tolerance::shorten_first_step(bool full)
   tell_of_first_step(instead);
 }
 
-/// instead: the length in LAMMPS.
+/// Reports the first step; instead: the length in LAMMPS.
 void Tolerance::tell_of_first_step(double instead) const
 {
   if (comm->me == 0)

@@ -206,7 +206,8 @@ inline const std::vector<TunedSet> &tuned_sets()
   return sets;
 }
 
-/// Null if there is none.  any_norm: the set for quaternions of any length, if there is one.
+/// The tuned set, null if there is none.  any_norm: the set for quaternions of any length, if there
+/// is one.
 inline const TunedSet *tuned_set(Formulation formulation, int values, Columns columns,
                                  bool any_norm = false)
 {
@@ -229,7 +230,7 @@ inline bool has_tuned(Formulation formulation, int values)
   return tuned_set(formulation, values, Columns::DRIVEN) != nullptr;
 }
 
-/// These numbers in ascending order.
+/// The numbers of values with tuned coefficients, in ascending order.
 inline std::vector<int> tuned_values(Formulation formulation)
 {
   std::vector<int> values;

@@ -36,7 +36,7 @@ class MolecularVirial : protected Pointers {
   /// Computes it from V and the latest forces f on atoms.  energy: of all bodies, approximate.
   /// Collective.
   void measure(double **f, double energy);
-  /// In units of mass times velocity squared.
+  /// The virial in units of mass times velocity squared.
   const Upper &value() const { return virial; }
   void restore(const Upper &saved) { virial = saved; }
   /// True if some atoms have torques of their own, which V does not include.  Collective.
