@@ -5,7 +5,7 @@ The script is read with LAMMPS' own switch -skiprun, so it ends without a single
 
     place atoms -> run 1 pre no post no -> read forces
 
-with the neighbour list checked at every evaluation: LAMMPS rebuilds it when an atom has moved half
+with the neighbor list checked at every evaluation: LAMMPS rebuilds it when an atom has moved half
 the skin, and the forces are computed at exactly the given positions, rounded to double.  An atom is
 put at the periodic image nearest to where LAMMPS has it, so unwrapped positions may lie anywhere.
 """
@@ -209,7 +209,7 @@ class LammpsForces:
         # the shift is taken off before rounding to double: wanted may be of a wider type
         x[here] = wanted - np.where(self._periodic, np.rint(away), 0) @ self._box.T
         self._run(self.lmp.command, "run 1 pre no post no")
-        here, rows = self._site_rows()  # a new neighbour list may have sorted the atoms
+        here, rows = self._site_rows()  # a new neighbor list may have sorted the atoms
         forces[rows] = self._local("f")[here]
         return self.lmp.extract_compute("thermo_pe", 0, 0), forces
 

@@ -17,7 +17,7 @@ SITES = ((3, -4, 0), (-3, -4, 0), (0, 0, 0), (0, 0, 12))
 EULER_DEGREES = (40, 100, 85)  # phi, psi, theta
 
 #: case -> center of mass, velocity, omega_body in units of pi; as text, so that any float type
-#: takes the decimal number itself and not its neighbour in double precision
+#: takes the decimal number itself and not its neighbor in double precision
 STARTS = {
     1: (("84", "0", "0"), ("0.2", "0", "0"), ("0.00625", "-0.0125", "0.00625")),
     3: (("70", "0", "0"), ("0", "0", "0"), ("0.01", "-0.02", "0.01")),

@@ -286,7 +286,7 @@ void Ownership::gather_large()
   packed_large = gather(mine, world);
 }
 
-/// Adds large bodies of other ranks after the owned ones.
+/// Adds large bodies of other ranks after the owned bodies.
 void Ownership::share_large()
 {
   const int size = large_size();

@@ -108,7 +108,7 @@ def script(name, temp, suffix="", known=False):
 
 @dataclass
 class VariantVerdict:
-    """``start``: what the log says of it."""
+    """``start``: the message about it in the log."""
 
     name: str
     start: str = ""

@@ -107,7 +107,7 @@ def line(x, mass, length, degrees):
 
 
 def equivalent_points(atom: Atom) -> list[Atom]:
-    """Six points of the same mass, centre and tensor of inertia."""
+    """Six points of the same mass, center and tensor of inertia."""
     moments = np.array(atom.moments)
     second = moments.sum() / 2 - moments
     arms = np.sqrt(np.maximum(3 * second / atom.mass, 0.0))

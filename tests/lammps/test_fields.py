@@ -19,7 +19,7 @@ def fields(lmp_tree, examples):
     return run
 
 
-# acceleration of the common centre: g, and q E / m
+# acceleration of the common center: g, and q E / m
 @pytest.mark.parametrize("effect, pull", [("gravity", -0.1), ("field", 0.5 * 0.2 / 4.0)])
 def test_constant_forces_give_the_exact_fall(fields, effect, pull, formulation):
     _, log = fields(effect, words=f"formulation {formulation}")

@@ -52,7 +52,8 @@ def judged(result, frames):
 @pytest.mark.parametrize("measure", ["length", "energy"])
 @pytest.mark.parametrize("mode", MODES)
 def test_errors_follow_the_tolerance(lmp_wheel, mode, measure):
-    """By slope: motion, edges and energy follow a length, and the energy an energy."""
+    """Orders by slope: motion, edges and energy follow an eps that is a length; the energy follows an eps that is an
+    energy."""
     words = MODES[mode]
     decks = [fixed(words), *(controlled(words, eps, measure) for eps in EPS), fixed(words.replace("0.6", "0.606"))]
     result, frames = ends(lmp_wheel, decks)

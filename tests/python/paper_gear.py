@@ -2,7 +2,7 @@
 
 Exactly as the paper ran them: zero start, nothing projected, every formula as it stands (Eqs. 5 to 18
 as corrected), so that |q| wanders off 1 and the matrix of Eq. 8 is not quite a rotation.  Then the
-motion depends on the choice of body axes: A(q) = |q|^2 R + (|q|^2 - 1) 1 holds for no other labelling
+motion depends on the choice of body axes: A(q) = |q|^2 R + (|q|^2 - 1) 1 holds for no other labeling
 of the principal axes.  ``turn`` takes the body axes of the reference into any of the 24.
 """
 

@@ -1,6 +1,6 @@
 """The fix with the choices of the paper compared with the paper's equations in plain numpy.
 
-Unprojected, the motion depends on how the principal axes are labelled (see paper_gear.py).  LAMMPS does not know the
+Unprojected, the motion depends on how the principal axes are labeled (see paper_gear.py).  LAMMPS does not know the
 labeling of the paper, so the fix has to agree with one of the 24 labelings, to rounding.
 """
 

@@ -114,7 +114,7 @@ def _rescale(ts, length, time):
     if ts.has_velocities:
         ts.velocities = ts.velocities * (length / time)
     ts.data["time"] *= time
-    if ts.data["step"] > MOST:  # more than xtc and trr can count
+    if ts.data["step"] > MOST:  # larger step numbers than xtc and trr can store
         ts.data["step"] = ts.frame
 
 

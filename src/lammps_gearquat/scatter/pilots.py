@@ -133,8 +133,8 @@ def nearest_thermal(plan, boltzmann, energy):
 def settle(plan, facts, places, columns, boltzmann, allowed, given=None):
     """(Plan, Largest) from the ``columns`` of the pilots at ``places``, Cells.
 
-    Beyond the largest impact parameter there is at most the part ``allowed`` of every loss, unless it is ``given``.
-    Raises DeckError.
+    Beyond the largest impact parameter there is at most the part ``allowed`` of every loss, unless this parameter is
+    ``given``.  Raises DeckError.
     """
     gone = _parted(columns)
     scales = plan.scales(boltzmann)

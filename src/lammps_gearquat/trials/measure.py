@@ -187,7 +187,7 @@ class Deck:
         self._continued = [part.continued for part in parts]
 
     def _test_checkpoint(self):
-        """Drop the checkpoints if steps from the last one differ from the deck's own steps."""
+        """Drop the checkpoints if steps from the last checkpoint differ from the steps of the deck."""
         if not self.start.checkpoints or self._anew:
             return
         try:

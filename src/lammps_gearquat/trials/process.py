@@ -229,7 +229,7 @@ def serve(address):
             answer = function(**arguments, tell=lambda news: connection.send((news,)))
         except (DeckError, LammpsError) as error:
             answer = error
-        except Exception as error:  # LAMMPS' module raises no class of its own
+        except Exception as error:  # LAMMPS' module raises only the class Exception
             answer = LammpsError(str(error).split("\nLast input line")[0])
         connection.send(answer)
 
