@@ -1,6 +1,6 @@
 """Reference logs of the examples, with names in the form used by LAMMPS: log.<date>.<name>.g++.1.
 
-``tests/run logs`` writes all of them anew, from the decks as they stand, in a copy of the examples.
+``tests/run logs`` writes all of them again, from the current decks, in a copy of the examples.
 tests/lammps/test_example_logs.py compares with them on 1 and 4 ranks.
 """
 

@@ -79,7 +79,7 @@ class Lab:
         return find_lmp(self._lmp)
 
     def prefer(self, lmp):
-        """Run this LAMMPS program, if it exists, unless another one was requested."""
+        """Run this LAMMPS program, if it exists, unless another program was requested."""
         if self._lmp is None and Path(lmp).is_file():
             self._lmp = str(lmp)
 

@@ -10,7 +10,7 @@ class Measurement:
     """One number: ``what`` it is, its ``value`` and, where it is known, one standard ``error``.
 
     ``spec`` formats value and error, ``unit`` follows them, and ``remark`` is appended in parentheses.
-    ``least`` and ``most`` bound the value for ``--check``; None stands for no bound.
+    ``least`` and ``most`` bound the value for ``--check``; None means no bound.
     """
 
     what: str

@@ -1,8 +1,8 @@
 """The cost of accuracy with SciPy's solvers DOP853 and LSODA, in force evaluations.
 
-Every call of the right-hand side counts, whoever makes it and whatever for; LSODA chooses between
-Adams and BDF itself and gets no Jacobian, so the calls for one of differences are among them.  It
-keeps room for a full Jacobian: 340 MB for 500 bodies.
+Every call of the right-hand side counts, for any purpose; LSODA chooses between Adams and BDF itself and gets no
+Jacobian, so the calls for a Jacobian by differences are included.  It keeps room for a full Jacobian: 340 MB for 500
+bodies.
 
 CVODE of SUNDIALS is there where the Python package scikit-sundae is installed.  BDF is with Newton's
 method and a Jacobian of differences, Adams with functional iteration, which needs none.
@@ -20,7 +20,7 @@ from .equations import State
 METHODS = ("DOP853", "LSODA")
 #: methods of CVODE: name here -> name there
 CVODE = {"CVODE Adams": "Adams", "CVODE BDF": "BDF"}
-#: SciPy raises a smaller relative tolerance to this one, and says so in a warning
+#: SciPy raises a smaller relative tolerance to this value, with a warning
 SMALLEST_TOLERANCE = 100 * np.finfo(float).eps
 
 
@@ -46,7 +46,7 @@ class Errors:
 
 @dataclass(frozen=True)
 class WorkPoint:
-    """One run of a solver: ``tolerance`` asked, ``evaluations`` made, and ``errors``."""
+    """One run of a solver: requested ``tolerance``, number of ``evaluations``, and ``errors``."""
 
     tolerance: float
     evaluations: int
@@ -89,7 +89,7 @@ def _of_cvode(rates, span, start, method, rtol, atol):
 
 def _of_scipy(rates, span, start, method, rtol, atol):
     """The same of SciPy's methods."""
-    # no times in between are asked for: dense output would call the right-hand side for itself
+    # no times in between are requested, because dense output would call the right-hand side additionally
     solution = solve_ivp(rates, span, start, method, rtol=rtol, atol=atol)
     return solution.success, solution.message, solution.y.T
 

@@ -235,7 +235,7 @@ class Motion:
 
 
 def states(problem, time, splitting, steps, every=None):
-    """States at the end of every so many of ``steps`` equal steps to ``time``, default: of the last.
+    """States after every given number of the ``steps`` equal steps to ``time``; default: after the last step.
 
     Returns a list of (State, evaluations of the forces so far).
     """

@@ -1,4 +1,4 @@
-"""The reference state of a problem at a time, computed once: kept in memory and, if asked, on disk.
+"""The reference state of a problem at a time, computed once: kept in memory and, if requested, on disk.
 
 The key is the content: shapes, start, field, time, tolerance.  Every different problem is a separate entry, so a folder
 of entries never has to be cleared.

@@ -227,7 +227,7 @@ void FixGearQuat::setup(int vflag)
   driven_box->follow();
   motion->begin_run();
   sites->place_velocities();
-  bodies->forget_work();    // positions are the corrected ones
+  bodies->forget_work();    // positions belong to the corrected poses
   tally_virial(vflag, atom->f);
   show_bodies();
   motion_acts = true;

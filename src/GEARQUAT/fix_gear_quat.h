@@ -104,7 +104,7 @@ class FixGearQuat : public Fix {
   void *extract(const char *, int &) override;
 
  private:
-  // each object depends only on the ones before it; if the constructor fails, all are freed
+  // each object depends only on objects before it; if the constructor fails, all are freed
   std::unique_ptr<GearQuat::Arguments> args;
   std::unique_ptr<GearQuat::Fleet> fleet;
   std::unique_ptr<GearQuat::Bodies> bodies;

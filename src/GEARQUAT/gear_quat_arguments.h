@@ -88,7 +88,7 @@ struct Keyword {
     int fewest, most, standard;
     int standard_gear = 0;    ///< the default with corrector gear; 0: the same
   };
-  /// Another keyword that is required or excluded; an empty value stands for any value but "none".
+  /// Another keyword that is required or excluded; an empty value means any value except "none".
   struct Condition {
     std::string keyword, value;
     std::string reason;      ///< ends the error message, may be empty
@@ -118,7 +118,7 @@ struct Keyword {
   {
   }
 
-  // functions for the rows of the table; an empty default stands for the first word
+  // functions for the rows of the table; an empty default means the first word
 
   Keyword &word(const std::vector<std::string> &possible, const std::string &default_word = "")
   {
@@ -265,8 +265,8 @@ struct Arguments : protected Pointers {
   std::vector<tagint> body_ids(int groupbit) const;
 
   /// Components turned off by keywords force and torque, for bodies with at least one; later
-  /// keywords replace earlier ones.  ids: of all bodies, sorted.  An invalid range, a range with
-  /// bodies that do not exist, or motion out of the plane in two dimensions ends the run.
+  /// keywords replace earlier keywords.  ids: of all bodies, sorted.  An invalid range, a range
+  /// with bodies that do not exist, or motion out of the plane in two dimensions ends the run.
   std::map<tagint, Mask> masks_of(const std::vector<tagint> &ids) const;
 
  private:

@@ -30,7 +30,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class Extended;
 
-/// A sum over the sites of a body; unit: the scale of an exact one, 0 for a plain one, which is not
+/// A sum over the sites of a body; unit: the scale of an exact sum, 0 for a plain sum, which is not
 /// merged.
 struct SiteSum {
   ExactSum exact;

@@ -86,7 +86,7 @@ double Barostat::volume() const
   return box.volume(matrix);
 }
 
-/// W of a component; Pdamp of coupled ones is the same.
+/// W of a component; Pdamp of coupled components is the same.
 double Barostat::mass_of(int component) const
 {
   const double d = dimensions(), period = asked.period[component];

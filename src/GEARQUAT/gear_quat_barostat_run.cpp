@@ -375,7 +375,7 @@ Cause Barostat::instability(double h) const
           fmt::format("Use a Pdamp of {:.2g} or longer", frequency.needed_period(h))};
 }
 
-/// The box is predicted, but LAMMPS' box is still the old one.
+/// The box is predicted, but LAMMPS still has the old box.
 void Barostat::refuse_box() const
 {
   const Upper &before = box.matrix();

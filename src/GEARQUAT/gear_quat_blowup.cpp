@@ -272,8 +272,8 @@ std::string Blowup::agree(const std::string &text, int ibody, int bad, const Mee
   return broadcast(text, world, best.rank);
 }
 
-/// The motion of this body is certainly unstable; the errors of the others in the last step show
-/// whether the step is too long for all of them.
+/// The motion of this body is certainly unstable; the errors of the other bodies in the last step
+/// show whether the step is too long for all bodies.
 Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
 {
   if (coupling) {

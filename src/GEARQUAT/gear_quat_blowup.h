@@ -36,7 +36,7 @@ struct Pace {
 Pace pace_of(LAMMPS *lmp, const Bodies &bodies);
 
 /// Ends the run on all ranks if a body turns faster than can be followed at a step h.  Rank 0 warns
-/// of a nearly linear body that will do so once it has its share of the kinetic energy.
+/// of a nearly linear body that will turn that fast once it has its share of the kinetic energy.
 /// Collective.
 void check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme, const Pace &pace,
                  double h);

@@ -62,14 +62,14 @@ class Bodies {
 
   int nhere() const { return (int) body.size(); }
   int nowned() const { return nown; }
-  /// Bodies that this rank moves: owned ones and copies of large ones of other ranks.
+  /// Bodies that this rank moves: owned bodies, and copies of large bodies of other ranks.
   int nmoved() const { return nmove; }
   /// Bodies on all ranks.
   bigint number() const { return nbodies; }
   /// The number of insertions and removals, the same on all ranks.
   int changes() const { return nchanges; }
 
-  // bodies that this rank moves, by the work in a step; large ones last and in the same order on
+  // bodies that this rank moves, by the work in a step; large bodies last and in the same order on
   // all ranks; valid until atoms are exchanged
 
   std::vector<int> tops;      ///< rotate
@@ -133,7 +133,7 @@ class Bodies {
 
   // for ownership
 
-  std::vector<int> large;         ///< copies and owned ones, in the same order on all ranks
+  std::vector<int> large;         ///< copies and owned large bodies, in the same order on all ranks
   std::vector<int> ghost_tops;    ///< ghost bodies that rotate
 
   Body &change_body(int ibody) { return body[ibody]; }

@@ -48,7 +48,7 @@ class Box : protected Pointers {
   /// M and histories do not change.  To be called before atoms are exchanged.
   void flip();
 
-  // scaled centers with their velocities, and unscaled ones
+  // between scaled and unscaled centers, with their velocities
 
   void to_space(BodyState &s) const
   {

@@ -25,9 +25,9 @@
 
    Far from the target, or with many degrees of freedom, xi_2 grows as g xi_1^2: the chain is stiff,
    although the bodies move smoothly.  So only K(t) is interpolated over a step of the bodies, by
-   the polynomial through 2K at the end of the step and at the ends of earlier ones.  Eqs. T2 and T4
-   have quadratic right-hand sides, so the Taylor series of their solution under this polynomial is
-   a recursion.  It is summed in sub-steps as short as its last terms require.
+   the polynomial through 2K at the end of the step and at the ends of earlier steps.  Eqs. T2 and
+   T4 have quadratic right-hand sides, so the Taylor series of their solution under this polynomial
+   is a recursion.  It is summed in sub-steps as short as its last terms require.
 
    For the start, the host calls flow() for the friction at another time, and seed() with the 2K
    there.  Once a step it calls advance() in every pass, with the current 2K, and then conclude().
@@ -53,7 +53,7 @@ struct ChainTarget {
   double period = 0.0;    ///< tau
 };
 
-/// A polynomial in the time since a chain's present one, in units of a step.
+/// A polynomial in the time since the present time of a chain, in units of a step.
 struct ChainDrive {
   static constexpr int MOST = 2 * ((MAX_VALUES + 1) / 2) + 1;    ///< terms in a start
   int terms = 0;
@@ -81,7 +81,7 @@ class Chain {
   static constexpr int LONGEST = 10;    ///< most variables xi
   static constexpr int MOST = LONGEST + 1;
   using Variables = std::array<double, MOST>;    ///< xi_1 ... xi_M, S
-  /// Stored sums 2K: those for the polynomial, and two more for its error.
+  /// Number of stored sums 2K: for the polynomial, and two more for its error.
   static constexpr int MOST_SUMS = MAX_VALUES + 2;
   /// A chain with STIFF sub-steps per step is stiff; beyond GIVEN_UP the solution is abandoned.
   static constexpr int STIFF = 4, GIVEN_UP = 200000;

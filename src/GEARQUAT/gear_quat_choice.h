@@ -195,7 +195,7 @@ struct ChoiceOfValues {
 
   /// True if a step is too long for any number of values; only with tuned coefficients.
   bool too_long(const Scheme &scheme) const { return scheme.tuned && advised_part(scheme) < 1.0; }
-  /// A step that is not too long, as a part of the present one.
+  /// A step that is not too long, as a part of the current step.
   double advised_part(const Scheme &scheme) const
   {
     if (scheme.first()) return turn > FIRST_LONGEST_TURN ? FIRST_ADVISED_TURN / turn : 1.0;

@@ -52,7 +52,7 @@ struct AtomsOfBody {
   bigint natoms = 0;
   tagint smallest_id = MAXTAGINT, largest_id = 0;    ///< the user's, of the body
   bigint in_group = 0;                               ///< atoms in the group of the request
-  bigint own_freedoms = 0;                           ///< rotational ones of the atoms themselves
+  bigint own_freedoms = 0;                           ///< rotations of the atoms themselves
   CarriedSum mass;
 
   // of the owner

@@ -92,7 +92,7 @@ class Coupling : protected Pointers {
   virtual void measure() = 0;
   /// The load on a body, including the friction; to be called after measure().  Local.
   virtual Load acting(int ibody) const = 0;
-  /// Histories and states from predicted to corrected ones.
+  /// Corrects the predicted histories and states.
   virtual void correct(const Integrator &integrator, int passes) = 0;
   /// The step of length h is accepted.
   virtual void note_step(double /*h*/) {}
@@ -125,7 +125,7 @@ class Coupling : protected Pointers {
   virtual void settle(const StartNodes &nodes, int pair) = 0;    ///< local
   /// Makes histories from the innermost `pairs`. values: of the method.  Local.
   virtual void seed(const StartNodes &nodes, int pairs, int values) = 0;
-  /// Makes histories from the present alone, after measure(); those of bodies have `terms` terms.
+  /// Makes histories from the present alone, after measure(), with `terms` terms for bodies.
   virtual void seed_local(double h, int terms) = 0;
   // With a moving box: refer_to_box() resets its histories; enter_node() sets the box of a node and
   // unscales the states, whose centers are scaled; leave_nodes() restores the box of the start.
@@ -161,7 +161,8 @@ class Coupling : protected Pointers {
  protected:
   Bodies &bodies;
 
-  /// Calls `act(ibody)` for each body with a history on this rank: owned ones and copies of large ones.
+  /// Calls `act(ibody)` for each body with a history on this rank: owned bodies and copies of large
+  /// bodies.
   template <class Act> void for_moved(Act act) const
   {
     for (const auto *list : {&bodies.points, &bodies.tops})

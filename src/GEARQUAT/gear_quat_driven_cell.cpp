@@ -155,7 +155,7 @@ void DrivenCell::put_back_box()
   ahead = false;
 }
 
-/// Converts earlier boxes to cells of the same lattice as the present one.
+/// Converts earlier boxes to cells of the same lattice as the current box.
 void DrivenCell::note_box()
 {
   const Cell now = present();

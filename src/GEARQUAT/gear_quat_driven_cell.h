@@ -15,7 +15,7 @@
 
    LAMMPS changes the box at the end of a step.  The forces of a step need the box at its end, which
    is extrapolated by a polynomial through the last boxes.  Before a run fix deform itself provides
-   its boxes at the steps around the present one. */
+   its boxes at the steps around the current step. */
 
 #ifndef LMP_GEAR_QUAT_DRIVEN_CELL_H
 #define LMP_GEAR_QUAT_DRIVEN_CELL_H
@@ -51,7 +51,7 @@ class DrivenCell : public Thermostat {
   /// True while fix deform computes a box for this class: no atom is remapped.
   bool is_asking() const { return asking; }
   void note_remap() { remaps = true; }
-  /// Fix deform has changed the box from the present box of the bodies to the next one.
+  /// Called when fix deform has changed the box from the current box of the bodies to the next box.
   void remap(const std::vector<double> &before, bool histories);
   bool remaps_atoms() const { return remaps; }
   /// Begins a step; returns the box in which its forces will be evaluated.
@@ -109,7 +109,7 @@ class DrivenCell : public Thermostat {
   bool remaps = false;                         ///< atoms are remapped with the box
   bool no_step = true;                         ///< since the run began
   double width = 0.0;                          ///< the step
-  std::array<Cell, PAST + 1 + AHEAD> cells;    ///< from step -PAST on, the present one is 0
+  std::array<Cell, PAST + 1 + AHEAD> cells;    ///< from step -PAST on; the current step is 0
   Cell begun;                                  ///< LAMMPS' box when the step began
   Cell then;                                   ///< at the end of the step
   Upper face_rate;

@@ -107,9 +107,9 @@ struct Friction {
   double torque(double met, double l) const { return met - rotation * l; }
 
   // A residual r changes a velocity by `share` * r, and thus the friction.  The functions turn
-  // explicit residuals of a center into implicit ones, and of a rotation component by component.
-  // share: with the units of a time.  unit: the residual of a unit acceleration.  The common motion has no friction, so its
-  // residual is the explicit one.
+  // explicit residuals into implicit residuals, for a rotation component by component.  share: with
+  // the units of a time.  unit: the residual of a unit acceleration.  The common motion has no
+  // friction, so its residual is the explicit one.
 
   void solve(double share, double unit, double *residual) const
   {

@@ -386,7 +386,7 @@ struct MotionLimits {
   {
   }
 
-  /// False for velocities beyond the limits and for non-finite ones.
+  /// False for velocities that are beyond the limits or not finite.
   bool keep_velocities(const BodyState &s) const
   {
     return dot3(s.velocity, s.velocity) < speed2 && dot3(s.omega_body, s.omega_body) < rate2;

@@ -25,7 +25,7 @@ bool image_flag_overflow(const Domain *domain, const double *expected, const dou
 /// (3).  Without an overflow `unwrapped` does not change.
 void undo_image_flag_overflow(const Domain *domain, const double *expected, double *unwrapped);
 
-/// True if the position of an atom relative to another one has changed by whole periods and has
+/// True if the position of an atom relative to another atom has changed by whole periods and has
 /// become longer by `further`.
 bool whole_periods_away(const Domain *domain, const double *change, double further);
 

@@ -192,7 +192,7 @@ class Integrator : public Kinematics {
   template <int CARRIES> using First = Nordsieck<Scheme::FIRST_WIDTH, CARRIES>;
   template <int CARRIES> using Second = Nordsieck<Scheme::SECOND_WIDTH, CARRIES>;
 
-  /// Columns of the center, the first ones.
+  /// Columns of the center, which come first.
   template <int CARRIES> static constexpr int center_columns(First<CARRIES>) { return 6; }
   template <int CARRIES> static constexpr int center_columns(Second<CARRIES>) { return 3; }
 

@@ -326,7 +326,7 @@ class FrictionLimit {
   }
 
   /// The rows of a velocity v in the second formulation are the rows of a position after the first
-  /// one, times (j + 1) and divided by h.
+  /// row, times (j + 1) and divided by h.
   RowMap map(double friction) const
   {
     RowMap a = {};

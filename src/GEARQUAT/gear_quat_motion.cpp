@@ -20,7 +20,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// Histories start again if the step becomes shorter than this part of the last one: the errors in
+// Histories start again if the step becomes shorter than this part of the last step: the errors in
 // their higher rows are due to the long step.  They also start again if the step becomes longer by
 // more than this factor: the errors grow with powers of the ratio, and may be as large as the
 // motion.
@@ -28,8 +28,8 @@ using namespace GearQuat;
 static constexpr double SHORTER = 0.49, LONGER = 2.05;
 
 // Forces at a corrected pose differ from forces at the predicted pose by the effect of the
-// correction, so at a stable step their residual is smaller than the last one.  If a residual
-// exceeds the last one by OTHER_FORCES, or by OTHER_NOISE for random forces, the forces have
+// correction, so at a stable step their residual is smaller than the last residual.  If a residual
+// exceeds the last residual by OTHER_FORCES, or by OTHER_NOISE for random forces, the forces have
 // changed since the last step.  Residuals explained by rounding are excepted: rounding of forces,
 // relative to the largest force on an atom, and rounding of the displacement of a body in a step.
 

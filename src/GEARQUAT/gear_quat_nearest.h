@@ -4,8 +4,8 @@
 ------------------------------------------------------------------------- */
 
 /* The rigid motion of a body that is nearest to given displacements of its n sites, with equal
-   weights (doc/theory.md, Energy minimization): for small motions a linear problem, for large ones
-   the orthogonal Procrustes problem.  Fixed components do not move. */
+   weights (doc/theory.md, Energy minimization): for small motions a linear problem, for large
+   motions the orthogonal Procrustes problem.  Fixed components do not move. */
 
 #ifndef LMP_GEAR_QUAT_NEAREST_H
 #define LMP_GEAR_QUAT_NEAREST_H

@@ -99,7 +99,8 @@ class BodyTable : protected Pointers {
 };
 
 /// Data that other C++ code may request from the fix by name, see Fix::extract(): names as in fix
-/// rigid where they exist.  Bodies are numbered as in the local data of the fix, owned ones first.
+/// rigid where they exist.  Bodies are numbered as in the local data of the fix, owned bodies
+/// first.
 class Extract : protected Pointers {
  public:
   /// template_id: template of keyword mol, or empty.

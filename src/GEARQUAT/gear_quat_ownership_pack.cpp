@@ -202,7 +202,7 @@ int Ownership::pack_reverse(int n, int first, double *buf)
   return m;
 }
 
-/// Adds labels and loads of ghosts to those of their owners.
+/// Adds labels or loads of ghosts to the values of their owners.
 void Ownership::unpack_reverse(int n, const int *list, const double *buf)
 {
   if (labels) {

@@ -41,7 +41,7 @@ struct Member {
   double arm_body[3];
   double found[3];    ///< unwrapped position
 
-  double expected[3], remapped[3];    ///< from the body in the old box, and mapped to the new one
+  double expected[3], remapped[3];    ///< from the body in the old box, and mapped to the new box
 };
 
 /// Instructions to the rank of an atom: move the atom and, if it is an owner atom, the center of

@@ -27,8 +27,8 @@ struct Release030 {
   struct {
     double mode, length;    ///< number of chains, 0 for none; of variables xi
     double bodies, kt, kt_step, period, freedoms[2];
-    /// Row 0 is the present value, the next ones are derivatives in units of the step, and the last
-    /// one is a trial row.  The last variable of a chain is S.
+    /// Row 0 is the present value, the next rows are derivatives in units of the step, and the last
+    /// row is a trial row.  The last variable of a chain is S.
     double rows[2][VARIABLES][VALUES + 1];
   } thermostat;
 

@@ -72,7 +72,7 @@ static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Fleet &f
 }
 
 /// Granular walls request the masses of bodies only from the first rigid fix; pair styles refuse a
-/// second one.
+/// second rigid fix.
 static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
 {
   const Fix *first = nullptr;

@@ -4,7 +4,7 @@
 ------------------------------------------------------------------------- */
 
 /* Named sections of numbers, which a restart file contains besides the data of atoms.  Each object
-   writes and reads the sections of its own state.  A reader ignores unknown sections and queries
+   writes and reads the sections with its state.  A reader ignores unknown sections and queries
    the number of elements in a section, so releases read each other's files.  A number keeps its
    position and meaning in a section; new numbers are added at the end.
 

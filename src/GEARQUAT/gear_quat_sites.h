@@ -119,7 +119,7 @@ class Sites : protected Pointers {
   std::vector<std::array<int, 3>> images;     ///< in periods, from wrapped to unwrapped positions
   std::vector<int> image;                     ///< of the sites: index of the image
   std::vector<std::array<double, 3>> ways;    ///< scratch: of the images, in the present box
-  std::vector<int> first, first_arm;    ///< of each body: its first site, its first one with an arm
+  std::vector<int> first, first_arm;    ///< the first site of each body, and the first with an arm
   bool any_images = false;              ///< some of these are not zero
   bool any_forces = true;
   int nplacements = 0;

@@ -155,7 +155,7 @@ struct StartFound {
   StartPlan::Verdict verdict;    ///< CONVERGED or JUMPS; SHORTER_SPACING if there is none
   int pairs = 0;                 ///< of nodes that the polynomial goes through
   double spacing = 0.0;          ///< of the nodes
-  double change = 0.0;           ///< the last one seen
+  double change = 0.0;           ///< the last error seen
 
   /// The highest known derivative of positions.
   int order() const { return 2 * pairs + 2; }

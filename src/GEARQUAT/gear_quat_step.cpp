@@ -246,7 +246,7 @@ void Step::begin_fresh(double **f)
 /// A shrink-wrapped box sets no limits.
 void Step::find_limits(double h)
 {
-  constexpr int SHRINKS = 2;    // LAMMPS' boundary codes from this one on are shrink-wrapped
+  constexpr int SHRINKS = 2;    // LAMMPS' boundary codes from this code on are shrink-wrapped
   double longest = 0.0;
   for (int k = 0; k < 3; ++k) {
     const int *faces = domain->boundary[k];

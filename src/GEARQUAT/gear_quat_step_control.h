@@ -298,7 +298,7 @@ class StepControl {
   /// If a step fails within this many steps of another failure, the rows are unusable.
   static constexpr int SOON = 4;
   /// With ten values, errors of rows grow if each step is shorter by a factor of 0.78 to 0.88, and
-  /// decay for this factor and larger ones.  An accepted step is therefore not made much shorter
+  /// decay for this factor and larger factors.  An accepted step is therefore not made much shorter
   /// within this many steps of another change.
   static constexpr double GENTLE = 0.95;
   static constexpr int FADED = 5;
@@ -312,7 +312,7 @@ class StepControl {
   int short_of = 0;
 
   struct Next {
-    double step;    ///< with the sign of the present one
+    double step;    ///< with the sign of the current step
     int values;
     bool held;    ///< limited from below: the error requires a shorter step
   };
@@ -332,7 +332,7 @@ class StepControl {
     return energy ? both.energy : both.length;
   }
 
-  /// True if a step is to be repeated with a shorter one.
+  /// True if a step must be repeated with a shorter step.
   bool fails(double error, double step) const
   {
     return !(error <= eps) && std::fabs(step) > shortest;

@@ -180,7 +180,7 @@ void Surroundings::warn_of_own_pairs() const
 {
   if (!exerts_forces(force->pair, force->pair_style) || meets_itself()) return;
   using Example = std::array<tagint, 3>;    // body, two of its atoms
-  std::vector<Example> found;               // the first one on this rank
+  std::vector<Example> found;               // the first body on this rank
   visit_pairs([&](int i, int j, int bonded) {
     if (label[i] != label[j] || label[i] <= STILL) return;
     if (force->special_lj[bonded] == 0.0 && force->special_coul[bonded] == 0.0) return;
@@ -216,7 +216,7 @@ bool Surroundings::meets_itself() const
   return false;
 }
 
-/// An existing group of atoms that nothing moves, the largest, or a new one.
+/// The largest existing group of atoms that nothing moves, or a new group.
 std::string Surroundings::exclude_still(bigint still) const
 {
   std::string best;

@@ -22,7 +22,7 @@ using namespace GearQuat;
 static constexpr double SAME = 1.0e-6;       // numbers of a file have few digits
 static constexpr double ROUNDED = 1.0e-3;    // of a moment
 
-/// The present properties of the molecule: given ones, and sums over its atoms for the rest.
+/// The current properties of the molecule: given properties, and sums over its atoms for the rest.
 static StatedMolecule present(Molecule *molecule)
 {
   molecule->compute_center();

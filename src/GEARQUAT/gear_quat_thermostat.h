@@ -17,7 +17,7 @@
    derivatives.  In a step with insertions or removals the chains are predicted and not corrected.
 
    Before the first step of a run begin_run() has only the forces of fixes that are defined before
-   this one; meet_forces() has all forces. */
+   this fix; meet_forces() has all forces. */
 
 #ifndef LMP_GEAR_QUAT_THERMOSTAT_H
 #define LMP_GEAR_QUAT_THERMOSTAT_H

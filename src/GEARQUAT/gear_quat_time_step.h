@@ -32,7 +32,7 @@ class TimeStep : protected Pointers {
   /// True while fixes are notified of a length set by change().
   bool is_changing() const { return changing; }
 
-  // LAMMPS' step, and dependent quantities in other fixes and in this one
+  // LAMMPS' step, and dependent quantities in other fixes and in this fix
 
   /// Changes the length after the current step.
   void change(double step);

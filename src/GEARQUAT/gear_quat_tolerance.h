@@ -100,7 +100,7 @@ class Tolerance : protected Pointers {
   /// Shortens the first step if its error would be too large.  full: as in begin().  Collective.
   void shorten_first_step(bool full);
 
-  /// Begins a step, with the histories of the last one.  After a run with `pre no` the length of
+  /// Begins a step, with the histories of the last step.  After a run with `pre no` the length of
   /// the histories is restored; ends the run if other atoms have moved already.  Collective.
   void begin_step();
   /// Corrects one body.

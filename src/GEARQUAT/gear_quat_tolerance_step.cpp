@@ -30,7 +30,7 @@ using namespace LAMMPS_NS;
 using namespace GearQuat;
 
 // no step moves a site by more than this part of the neighbor skin, so that the onset of a force is
-// noticed before the body has moved far into its range
+// detected before the body has moved far into its range
 
 static constexpr double PART_OF_SKIN = 0.25;
 
@@ -272,8 +272,8 @@ double Tolerance::next_output(double step, double now) const
   return next;
 }
 
-/// Equal steps that end at the next output if it is due within a few steps; the last one ends there
-/// to the last bit.  now: the beginning of the step.
+/// Equal steps that end at the next output if it is due within a few steps; the last step ends
+/// there to the last bit. now: the beginning of the step.
 double Tolerance::even(double step, double now) const
 {
   if (step <= 0.0) return step;

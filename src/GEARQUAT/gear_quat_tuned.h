@@ -17,8 +17,8 @@
    roots of modulus 0.98 and the angle and c_0 of the least drift in liquids (doc/coefficients.md).
 
    Order conditions.  Let the right-hand side be a given function of time and the solution a
-   polynomial of degree N, y_N = h^N/N! y^(N) = 1 for all times.  The rows then deviate from the
-   exact ones, y_j = exact + e_j, by an e_j that is constant above row q - 1 (q: the order of the
+   polynomial of degree N, y_N = h^N/N!  y^(N) = 1 for all times.  The rows then deviate from the
+   exact rows, y_j = exact + e_j, by an e_j that is constant above row q - 1 (q: the order of the
    equation), with a constant residual r:
 
      row N-1           c_(N-1) r = N
@@ -285,7 +285,7 @@ struct CorrectorCoefficients {
   }
 
   /// First-order equation: h^N y^(N) has the same weight as with Gear's coefficients, or a larger
-  /// one if the error, of one order higher, is larger than Gear's.
+  /// weight if the error, of one order higher, is larger than Gear's.
   static double fill_tuned(const Scheme &scheme, Columns columns, Array &c)
   {
     const int n = scheme.values();

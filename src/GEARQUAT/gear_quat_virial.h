@@ -39,7 +39,7 @@ class MolecularVirial : protected Pointers {
   /// The virial in units of mass times velocity squared.
   const Upper &value() const { return virial; }
   void restore(const Upper &saved) { virial = saved; }
-  /// True if some atoms have torques of their own, which V does not include.  Collective.
+  /// True if torques act on some atoms themselves, which V does not include.  Collective.
   bool has_torques() const;
   /// True if another compute requests a virial in this step.
   bool others_ask(bigint step) const;

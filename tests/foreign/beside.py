@@ -44,7 +44,7 @@ MOVERS = {
 SAME = 2e-9
 #: in units of the error of the reference, which is determined by halving its step
 WITHIN = 4.0
-#: error of fix rigid at step DT in the plain scene, in units of that at DT/4 to DT/8
+#: error of fix rigid at step DT in the plain scene, in units of its error at DT/4 to DT/8
 BROAD = 1e-5
 #: messages of LAMMPS if variants of styles lack a feature that a style needs
 NO_VARIANT = re.compile(r"INTEL package does not support")
@@ -114,7 +114,7 @@ def _distance(a, b):
 
 
 def distances(one, other, sums=False):
-    """Dictionary of what two answers hold -> distance; "error" alone if one of them is an error.
+    """Dictionary of the entries of two answers -> distance; "error" alone if one of them is an error.
 
     With ``sums`` per-atom values are added up first.
     """
@@ -141,7 +141,7 @@ def worst(found, tolerance):
 
 
 def beyond(ours, coarse, fine, a_try):
-    """What of ``ours`` is further from the finer reference than its error allows, as text."""
+    """The entries of ``ours`` that are further from the finer reference than its error allows, as text."""
     error = distances(coarse, fine, a_try.sums)
     apart = distances(ours, fine, a_try.sums)
     if a_try.pieces:  # counts of the style start again with each part of the run
@@ -191,7 +191,7 @@ class SceneRun(NamedTuple):
 
 
 def variants(n, a_try, ranks):
-    """The runs of scene ``n`` that have to agree; the first is what others are compared with."""
+    """The runs of scene ``n`` that have to agree; the other runs are compared with the first."""
     found, several = [SceneRun(n), SceneRun(n, "before")], [number for number in ranks if number > 1]
     if a_try.kind in (INTEGRATES, BOX, RIGID_ONLY) or not a_try.restarts:
         return found + [SceneRun(n, ranks=number) for number in several]
@@ -366,7 +366,7 @@ class Campaign:
 
 # --- all ------------------------------------------------------------------------------------------
 def scenes_of(executable, only=None):
-    """([(kind, style, Try)], {style: reason}, [unknown styles]) of what `lmp -h` lists."""
+    """([(kind, style, Try)], {style: reason}, [unknown styles]) for the styles that `lmp -h` lists."""
     scenes = [("fix", "", Try(PASSIVE, atoms=atoms)) for atoms in scene.FORMATS]
     reasons, unknown = {}, []
     for kind in ("fix", "compute"):

@@ -121,7 +121,7 @@ def measured_at(commits):
 
 
 def page(commits, tried, variants, verdicts, units):
-    """Text of doc/foreign.md; arguments as in __main__, ``commits`` in the order of the others."""
+    """Text of doc/foreign.md; arguments as in __main__, ``commits`` in the order of the other arguments."""
     parts = (
         ("decks", verdicts),
         ("other styles", tried),

@@ -18,7 +18,7 @@ EPSILON, WRONG_EPSILON = "* * 0.3 ", "* * 0.303 "
 
 
 def all_errors(engine, folder):
-    """Yields (text of an error, whether it was noticed)."""
+    """Yields (text of an error, whether it was detected)."""
     scene.write_files(folder)
     yield from wrong_forces(engine, folder)
     yield from wrong_thermostats(engine, folder)

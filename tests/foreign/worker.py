@@ -132,7 +132,7 @@ class Probes:
 
 
 def obey(lmp, job):
-    """Runs the lines of a job; returns a dictionary of what it noted, and the error that ended it on all ranks.
+    """Runs the lines of a job; returns a dictionary of the noted data, and the error that ended it on all ranks.
 
     Raises LammpsError if only one rank has an error, because the other ranks are not informed and wait.
     """

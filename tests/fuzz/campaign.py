@@ -61,7 +61,7 @@ def run_worker(kind, seed, count, folder):
 
 
 def run(kind, inputs, folder, seed=0):
-    """Tally of this number of inputs of a kind, "arguments" or "infile"; the same ones for the same seed."""
+    """Tally of this number of inputs of a kind, "arguments" or "infile"; equal inputs for equal seeds."""
     tally, begin = Tally(), time.monotonic()
     for first in range(0, inputs, IN_A_PROCESS):
         found = run_worker(kind, seed + first, min(IN_A_PROCESS, inputs - first), folder)

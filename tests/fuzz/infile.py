@@ -1,4 +1,4 @@
-"""Files for the keyword infile, and broken ones."""
+"""Valid and invalid files for the keyword infile."""
 
 import numpy as np
 

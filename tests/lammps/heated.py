@@ -39,7 +39,7 @@ def continued(deck, file):
 
 
 def whole_and_halves(deck_of, first, second, span=""):
-    """A run, its two halves, and the second one from a restart file; span: text after the steps of a half.
+    """A run, its two halves, and the second half from a restart file; span: text after the steps of a half.
 
     ``deck_of(words, kind, commands)`` makes a deck. Returns decks, and a name for every three; the final
     atoms are in NAME-whole.end, NAME-halves.end and NAME-again.end.

@@ -280,7 +280,7 @@ def water(
     skin=0.9,
     dumped="",
 ) -> str:
-    """A deck; dt in fs for all units, ``columns`` of thermo after the usual ones.
+    """A deck; dt in fs for all units, ``columns`` of thermo after the usual columns.
 
     With other pairs (style and coefficients) and units lj it can be used for any data of atom style full.
     """

@@ -269,7 +269,7 @@ def test_a_restart_with_an_inserted_body(lmp_tree):
     "commands, number",
     [
         ("create_atoms 1 single 2 2 2\ncreate_atoms 1 single 2 2 7", 2),
-        # the second one is inserted later
+        # the second molecule is inserted later
         (
             "region within block 0 13 0 13 0 13\n"
             "fix in all deposit 2 1 1 4711 region within near 2.0 attempt 2000",

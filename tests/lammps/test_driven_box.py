@@ -271,7 +271,7 @@ def test_energy_changes_by_the_work_of_the_box(lmp_wheel, name):
 
 
 def test_a_restart_in_the_middle_of_a_deformation_goes_on(lmp_wheel):
-    """The results agree to rounding, also those of two runs."""
+    """The results agree to rounding, also for two runs."""
     for name, words in (("compressed", ""), ("sheared", "temp 0.7 0.7 0.8"), ("wiggle", "formulation first")):
         after, tilted = FOLLOWED[name]
         span = "start 0 stop 200"

@@ -1,4 +1,4 @@
-"""Forces between steps are the ones that LAMMPS evaluates in a step, with all arrays that are cleared with them."""
+"""Forces between steps are the same as LAMMPS evaluates in a step, with all arrays that are cleared with the forces."""
 
 import subprocess
 from importlib import metadata

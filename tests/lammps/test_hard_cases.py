@@ -81,7 +81,7 @@ def in_the_cage(lmp, pose, formulation, turn, words="", dt=0.005):
 
 @pytest.mark.parametrize("pose", POSES)
 def test_no_frame_is_preferred(lmp_wheel, formulation, pose):
-    """Euler angles are singular at theta = 0 and pi; the trajectory is that of the turned scene."""
+    """Euler angles are singular at theta = 0 and pi; the trajectory agrees with the turned scene."""
     words = "compensate yes"
     straight = in_the_cage(lmp_wheel, pose, formulation, np.eye(3), words)
     assert np.ptp(straight, axis=0).max() > 1.0

@@ -1,4 +1,4 @@
-"""Bodies of any size on several ranks: larger than the ghost cutoff, together with small ones.
+"""Bodies of any size on several ranks: larger than the ghost cutoff, together with small bodies.
 
 A slab of 288 atoms lies across the boundaries of a box, among some hundred rigid trimers; the ghost
 cutoff is 2.8, the slab extends 8 from its owner atom. All move through the box, so that the owner changes

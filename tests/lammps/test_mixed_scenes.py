@@ -225,7 +225,7 @@ def test_bodies_and_solvent_move_each_other(solution, ranks):
 
 
 def test_respa_with_forces_of_both_levels(box, fix):
-    """A bond acts on a body on one level, all pairs on the other: their sum moves it."""
+    """A bond acts on a body on one level, and all pairs on the other level: their sum moves the body."""
     box.data = with_bonds(box.data)
     before = SOLVENT["flexible"] + "\nfix others others nve\n"
     common = dict(group="bodies", dt=0.2, steps=200)

@@ -8,7 +8,7 @@ from scenes import one_after_the_other, placed
 
 O, C, LENGTH = 15.9994, 12.011, 1.16
 
-# CO2 with its carbon off the axis; the first one rotates about the axis of the smallest moment
+# CO2 with its carbon off the axis; the first molecule rotates about the axis of the smallest moment
 def carbon_dioxide(bend, spin, tumble=0.002, words="", dt=1.0, steps=200, n=1, **settings):
     sites = np.array([[-LENGTH, 0, 0], [0, bend, 0], [LENGTH, 0, 0]])
     arms = sites - np.average(sites, axis=0, weights=[O, C, O])

@@ -210,7 +210,7 @@ def test_isokinetic_and_a_thermostat(lmp_wheel):
 
 @pytest.mark.parametrize("mode", ["total", "separate"])
 def test_isokinetic_and_momentum(lmp_wheel, mode):
-    """A change of 1e-9 has an effect of its own size: the damping by the multipliers continues.
+    """A change of 1e-9 has an effect of the same size: the damping by the multipliers continues.
 
     The step is short, because accelerations are set again, and errors of the start, where these forces
     vary discontinuously, are still present in step 20: they decay more slowly with tuned coefficients.

@@ -113,8 +113,8 @@ angle_coeff 1 109.47
 """
 OF_TIP4P = dict(style="tip4p/long 1 2 1 1 0.15 4.6", word="tip4p/long")
 MESH = "order 7 mesh 48 48 48"
-# Mesh and g are those of the first box, as in a run: sites of a molecule are not in the list, so g matters.  LAMMPS' erfc has seven digits
-# and is not consistent with its derivatives in the forces.
+# Mesh and g belong to the first box, as in a run: sites of a molecule are not in the list, so g matters.  LAMMPS' erfc
+# has seven digits and is not consistent with its derivatives in the forces.
 FORCES = {
     "smooth": (SMOOTH, 1e-8),
     "ewald": (LONG.format(kspace="ewald", mesh="kmax/ewald 16 16 16", **COUL), 2e-5),

@@ -131,7 +131,7 @@ def test_ranks_agree(lmp_tree, ranks):
 
 @pytest.mark.parametrize("mode", ["NVE", *MODES])
 def test_molecules_many_periods_off(lmp_tree, mode):
-    """LAMMPS' image flags count 511 periods.  Errors are those of positions in space, with a fixed or moving box."""
+    """LAMMPS' image flags count 511 periods.  Errors are errors of positions in space, with a fixed or moving box."""
     periods = (1, 20, 500)
     for far in periods:
         trimers(lmp_tree.folder / f"data.{far}", n=3, images=(far, -far * 4 // 5, far * 3 // 5))

@@ -44,7 +44,7 @@ def off(of, reference):
 
 
 def judged(result, frames):
-    """Errors of the second run and later ones relative to the first: velocities, edges, conserved energy."""
+    """Errors of the second and later runs relative to the first run: velocities, edges, conserved energy."""
     exact, *runs = zip(result.thermo, frames)
     return np.array([[*off(one, exact), largest_change(one[0])] for one in runs])
 

@@ -55,7 +55,7 @@ MAGIC = struct.pack("d", float(int.from_bytes(b"gearquat", "big")))
     [(0, 1.0, "an older (0.2.0 or before)"), (1, 99.0, "a newer"), (1, 5.0, "an unpublished")],
 )
 def test_files_of_other_releases_are_refused(lmp_tree, data, ranks, number, other, whose):
-    """Files of 0.2.0 begin with the formulation, 0 or 1; present ones with a magic number."""
+    """Files of 0.2.0 begin with the formulation, 0 or 1; current files with a magic number."""
     file = lmp_tree.folder / "file.restart"
     lmp_tree.succeed(water(data, run=f"run 1\nwrite_restart {file}"))
     content = file.read_bytes()

@@ -68,7 +68,7 @@ def test_a_file_goes_on_as_in_its_release(lmp_tree, release, name):
 
 
 def test_chains_of_0_3_0_keep_friction_and_energy(lmp_tree):
-    """Before the first step the output is the same as that of 0.3.0; then past sums start again."""
+    """Before the first step the output is the same as in 0.3.0; then past sums start again."""
     output, result = go_on(lmp_tree, "temp", FOLDER / "0.3.0" / "temp.restart")
     before = columns(output, slice(1)), columns(stored("0.3.0", "temp"), slice(1))
     found, right = ({k: v for k, v in one.items() if isinstance(k, str)} for one in before)

@@ -186,7 +186,7 @@ def liquid(examples):
 
 @pytest.mark.parametrize("name", MIXTURES)
 def test_evaluations_of_a_liquid(lmp_tree, liquid, name):
-    """The number of evaluations is limited to the useful ones, at a typical step."""
+    """The start makes no useless evaluations at a typical step."""
     order, evaluations, said, _ = liquid(lmp_tree, name, 2.0)
     assert 0 < evaluations <= MIXTURES[name][2]
     assert ("because forces change suddenly" in said) == (order < 8)

@@ -359,7 +359,7 @@ def test_a_single_body(lmp_tree):
 
 
 def test_ranks(lmp_tree):
-    """A heavy body among light ones moves; the distribution of bodies over ranks does not matter."""
+    """A heavy body among light bodies moves; the distribution of bodies over ranks does not matter."""
     ends, deck = [], moving(TEMP, (0.3, 0.2, 0.1), run="run 50\n" + END.format("a"), masses="mass 1 1.0\nmass 2 1000.0")
     heavy = deck.replace("set atom 4*6 mol 2", "set atom 4*6 mol 2 type 2")
     assert heavy != deck

@@ -35,7 +35,7 @@ def matrix_w(q):
     return np.array([[q4, -q3, q2, q1], [q3, q4, -q1, q2], [-q2, q1, q4, q3], [-q1, -q2, -q3, q4]])
 
 
-#: the 24 rotations that permute and flip axes, (24, 3, 3): old body axes -> new ones
+#: the 24 rotations that permute and flip axes, (24, 3, 3): old body axes -> new body axes
 FRAMES = np.rint(Rotation.create_group("O").as_matrix())
 
 

@@ -147,7 +147,7 @@ def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
     assert len(rows) == 500 and rows[0]["kind"] == "general" and float(rows[0]["mass"]) > 18.0
     for name in ("totals.png", "correlations.png"):
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
-    # files of the earlier analysis that this one does not write are gone
+    # files of the earlier analysis that this analysis does not write were removed
     result = analyze(water / "water.dump", tmp_path, "--units", "real")
     assert result.exit_code == 0 and "replaces the earlier one in" in result.output
     assert not (tmp_path / "poses.csv").exists() and (tmp_path / "averages.csv").exists()

@@ -187,7 +187,7 @@ def test_times_of_the_dump_are_the_ones_that_count(flights, tmp_path):
 
 # --- what formats cannot hold ----------------------------------------------------------------------
 def made(path, times, scale=1.0):
-    """A dump with times of its own, of 12 sites within 100 times ``scale``."""
+    """A dump that contains its times, of 12 sites within 100 times ``scale``."""
     rows = dumps.Motion([6, 6]).rows(0.0) * np.repeat([1.0, scale, 1.0], [4, 3, 3])
     frames = [f"ITEM: TIME\n{time!r}\n" + dumps.frame(k, rows) for k, time in enumerate(times)]
     path.write_text("".join(frames))

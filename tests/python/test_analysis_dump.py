@@ -49,7 +49,7 @@ BOX, EDGE = "-10 10", 20.0
 
 
 def wrapped(time, rows, flags=False):
-    """Positions in the box of EDGE; with image flags if asked."""
+    """Positions in the box of EDGE; with image flags if requested."""
     images = np.floor((rows[:, 4:7] + EDGE / 2) / EDGE)
     rows = rows.copy()
     rows[:, 4:7] -= EDGE * images

@@ -66,7 +66,7 @@ def test_ions_and_sites_without_charges_have_no_dielectric_constant(charges, why
 
 @pytest.fixture(scope="module")
 def gas(tmp_path_factory):
-    """A dump of dumbbells at random places, anew in each frame, in a box of length 20."""
+    """A dump of dumbbells at new random places in each frame, in a box of length 20."""
     rng, motion = np.random.default_rng(5), dumps.Motion([2] * 100, omega=0.0)
 
     def change(_, rows):

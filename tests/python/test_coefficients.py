@@ -44,7 +44,7 @@ def one_percent_off(corrector):
 
 # --- order ------------------------------------------------------------------------------------------
 def stepped(corrector, z):
-    """Matrix of one step in extended precision, from what a step does to each row."""
+    """Matrix of one step in extended precision, from the effect of a step on each row."""
     n, columns = corrector.values, []
 
     def predicted(rows):

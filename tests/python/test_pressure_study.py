@@ -18,7 +18,7 @@ def slow_walks(rng):
 
 
 def test_errors_of_drifts_are_their_scatter():
-    """The rms of deviations over errors is that of Student's t with 7 degrees of freedom."""
+    """The rms of deviations over errors agrees with Student's t with 7 degrees of freedom."""
     rng = np.random.default_rng(8)
     found = np.array([slow_walks(rng).drift(pressure.OURS, 2.0) for _ in range(300)])
     ratios = (found[:, 0] - RATE) / found[:, 1]

@@ -46,7 +46,7 @@ def test_angle_between_orientations(angle):
 
 @pytest.mark.parametrize("wrong", [1, 1.01])
 def test_principal_axes_to_the_last_digits(wrong):
-    """Tensors of known moments, also equal and widely different ones."""
+    """Tensors of known moments, which may be equal or widely different."""
     moments = [[3, 2, 1], [2, 2, 1], [2, 1, 1], [1, 1, 1], [1e6, 1, 1e-2]]
     moments, turns = np.array(moments, dtype=LONG), random_rotations(5)
     tensors = np.einsum("bij,bj,bkj->bik", turns, moments, turns)

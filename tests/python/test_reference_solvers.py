@@ -13,7 +13,7 @@ LONG = np.longdouble
 
 
 class Counting(Cage):
-    """A cage that counts its calls, in whatever float type."""
+    """A cage that counts its calls, in any float type."""
 
     calls = 0
 

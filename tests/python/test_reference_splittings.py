@@ -25,7 +25,7 @@ EVERY = pytest.mark.parametrize("splitting", SPLITTINGS, ids=LABELS)
 
 # --- order ----------------------------------------------------------------------------------------
 def oscillator(splitting, steps, end=4):
-    """x and v of x'' = -x - x^2/2 - x^3 after so many steps, in extended precision."""
+    """x and v of x'' = -x - x^2/2 - x^3 after this number of steps, in extended precision."""
     x, v, h = LONG(1) / 2, LONG(1), LONG(end) / steps
     for _ in range(steps):
         for is_kick, part in splitting.parts:

@@ -90,7 +90,7 @@ def mixed(seed, warm, n=400_000):
 
 
 def test_relaxation_of_rotation():
-    """The rate from the squared gain at equal temperatures equals the mean gain at different ones."""
+    """The rate from the squared gain at equal temperatures equals the mean gain at different temperatures."""
     x, gain = mixed(1, 1.0)
     difference = 0.1
     _, net = mixed(2, 1.0 + difference)

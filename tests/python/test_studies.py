@@ -11,7 +11,7 @@ from benchmarks.engine.store import read_data, write_data
 from running import ROOT
 
 
-#: test_liquids.py makes its page of made-up runs, because real ones take minutes
+#: test_liquids.py makes its page of made-up runs, because real runs take minutes
 STUDIES = [study for key, study in all_studies().items() if key != "liquids"]
 #: studies of which even a quick run of all parts takes minutes; there is no page from some of the parts
 PARTS = {"accuracy": ("top",), "scatter": ("conservation",)}

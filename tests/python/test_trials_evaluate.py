@@ -36,7 +36,7 @@ def test_angle_of_a_known_turn(angle):
     measured = angles(BODIES, SITES, turned(angle * axes))
     assert measured[:3] == pytest.approx(angle, abs=2e-15 + 1e-12 * angle)
     assert measured[3] == 0.0
-    if angle:  # and 1 % is noticed
+    if angle:  # and an error of 1 % is detected
         assert measured[:3] != pytest.approx(1.01 * angle, rel=1e-3)
 
 

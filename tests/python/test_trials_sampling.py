@@ -258,7 +258,8 @@ UNITS_OF_FRICTION = {"lj": (1.0, 1000.0), "metal": (1.0 / UNITS["metal"].energy,
 
 @pytest.mark.parametrize("units", UNITS_OF_FRICTION)
 def test_a_friction_is_the_drift_that_it_is_in_all_units(make_deck, units):
-    """A friction -gamma v takes gamma/m of the energy per unit of time, in kT and degree of freedom; 1 % is noticed."""
+    """A friction -gamma v takes gamma/m of the energy per unit of time, in kT and degree of freedom; 1 % is
+    detected."""
     force, ns = UNITS_OF_FRICTION[units]
     gamma, changes = 0.01 / force, {**FOR_GEAR, "units lj": f"units {units}"}
     if units == "metal":  # forces of eV would be strong in these units

@@ -92,7 +92,7 @@ def peak(water, low, high):
 
 
 def test_structure_is_that_of_water(water):
-    """First neighbors at 2.75 Angstrom, second ones where a tetrahedron has them, at 4.5."""
+    """First neighbors at 2.75 Angstrom, second neighbors at 4.5, as in a tetrahedron."""
     assert abs(peak(water, 2.0, 6.0) - 2.75) <= 0.11
     assert abs(peak(water, 3.4, 5.6) - 4.5) <= 0.35
 

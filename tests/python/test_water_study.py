@@ -147,7 +147,7 @@ ARMS = ATOMS - MASSES @ ATOMS / MASSES.sum()
 
 
 def write_dump(path, turns, axis, rate, centers=None):
-    """Dump with a frame per 96 fs: molecules at ``turns`` (F, B) that rotate about an axis of their own at a rate per fs.
+    """Dump with a frame per 96 fs: molecules at ``turns`` (F, B) that rotate about individual axes at a rate per fs.
 
     ``centers`` (F, B, 3), apart from each other by default.
     """

@@ -87,7 +87,7 @@ TABLE_ROW = f"""\
 #: words of the manual page that are in no dictionary of LAMMPS' spell check
 WORDS = ("Failor", "librations", "Mohamad", "Rapaport", "Zaini")
 
-#: sentences of the manual page that are about this repository: plugins, and releases of its own
+#: sentences of the manual page that are about this repository: plugins, and its releases
 ONLY_HERE = (
     "A plugin for the LAMMPS of the Python package cannot read them and warns.",
     "Ellipsoids, lines and triangles need headers that the LAMMPS of the Python package lacks: "

@@ -181,9 +181,10 @@ class Bodies:
 def _direct(axes, arms, masses):
     """Choose the directions of the principal axes (3, 3) of one body, in place, from its sites (see the fix's manual).
 
-    The first and the third axis point to the side of the heaviest site that is off the plane perpendicular to the axis (of
-    equally heavy ones, the first).  The second axis completes a right-handed frame.  If all sites are in the plane
-    perpendicular to the first or the third axis, the second axis is directed by sites, and that axis completes the frame.
+    The first and the third axis point to the side of the heaviest site that is off the plane perpendicular to the axis
+    (of equally heavy sites, the first).  The second axis completes a right-handed frame.  If all sites are in the plane
+    perpendicular to the first or the third axis, the second axis is directed by sites, and that axis completes the
+    frame.
     """
     along = arms @ axes.T
     size = np.abs(along).max()

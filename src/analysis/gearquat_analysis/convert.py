@@ -145,7 +145,7 @@ def _spacing(times, path):
 
 
 def _bodies(atoms):
-    """Bodies of all atoms of the universe; each atom outside of bodies is a body of its own."""
+    """Bodies of all atoms of the universe; each atom outside of bodies is a separate body."""
     everything = atoms.universe.atoms
     numbers = everything.resids.copy()
     alone = numbers == 0

@@ -108,8 +108,8 @@ def rotation_path(q, axis=None):
 def mean_square_rotation(q, bodies=None):
     """Mean of ``|phi(t + lag) - phi(t)|^2``, (F,), radians squared; and the largest turn between frames.
 
-    phi is ``rotation_path``.  If bodies turn by more than pi / 2 between frames, some turns may be taken for shorter
-    ones.  ``q`` (F, B, 4); ``bodies`` (Bodies): needed if some are linear.
+    phi is ``rotation_path``.  If bodies turn by more than pi / 2 between frames, some turns may be mistaken for shorter
+    turns.  ``q`` (F, B, 4); ``bodies`` (Bodies): needed if some are linear.
     """
     frames, number = q.shape[:2]
     axis = None

@@ -67,7 +67,7 @@ def diffusion(time, center, dimensions=3):
     """Estimate of the diffusion coefficient of centers (F, B, 3) of one kind of bodies, length squared / time.
 
     It is a sixth (in two ``dimensions``, a fourth) of the slope of the mean-square displacement.  The slope is taken
-    from the earliest range of lags such that this range and all later ones are linear.  The error is the largest of
+    from the earliest range of lags such that this range and all later ranges are linear.  The error is the largest of
     three: the scatter of blocks of the run, the scatter of bodies, and the error for Brownian motion.  Half of the
     largest difference from ranges that begin up to twice as late is added in quadrature.  The coefficient is NaN if no
     range with a first lag below a hundredth of the run is linear, if the error is above a fifth of the coefficient, or

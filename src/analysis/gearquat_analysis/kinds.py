@@ -112,6 +112,6 @@ def _name(poses, body):
         count = Counter(f"T{kind}" for kind in _types(atoms)[own].tolist())
         return "".join(f"({name}){n}" if n > 1 else name for name, n in sorted(count.items()))
     count = Counter(atoms.elements[own].tolist())
-    # carbon, hydrogen, then the others in alphabetical order (E. A. Hill, J. Am. Chem. Soc. 22, 478 (1900))
+    # carbon, hydrogen, then the other elements in alphabetical order (E. A. Hill, J. Am. Chem. Soc. 22, 478 (1900))
     order = sorted(count, key=lambda name: ("CH".find(name) % 3 if "C" in count else 0, name))
     return "".join(f"{name}{count[name] if count[name] > 1 else ''}" for name in order)

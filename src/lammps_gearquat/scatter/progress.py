@@ -29,7 +29,7 @@ class Progress:
         self._bar.total = self._bar.n + count
 
     def advance(self, count):
-        """Count so many more finished flights."""
+        """Count this number of further finished flights."""
         self._done += count
         self._bar.update(count)
         if self._bar.disable and self._clock() - self._told >= EVERY:

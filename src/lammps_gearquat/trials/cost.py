@@ -158,7 +158,7 @@ class Inquiry:
         return self.overhead + steps * pace
 
     def affords(self, keywords, steps, reserve=0.0, runs=1.0):
-        """True if so many ``runs`` of this length leave ``reserve`` seconds of the budget."""
+        """True if this number of ``runs`` of this length leaves ``reserve`` seconds of the budget."""
         return runs * self.expected(keywords, steps) < self.budget.left() - reserve
 
     def enough(self):

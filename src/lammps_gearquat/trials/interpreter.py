@@ -28,7 +28,7 @@ BLIND = set("""next variable timestep thermo_style thermo_modify neighbor neigh_
     suffix package shell label jump unfix uncompute""".split())
 #: commands that change or end a fix or compute, and the prefix of its ID in the set of omitted IDs
 CHANGES = {"fix_modify": "f_", "unfix": "f_", "compute_modify": "c_", "uncompute": "c_"}
-#: keywords of thermo_modify that decide whether a run goes on
+#: keywords of thermo_modify that decide whether a run continues
 RUNS_ON = ("temp", "press", "lost", "lost/bond")
 MARK = "gearquat_branch"
 

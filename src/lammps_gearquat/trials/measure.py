@@ -34,7 +34,7 @@ class Trial:
     evaluations of the forces before the first step. ``seconds`` and ``start_seconds``, wall times of the steps and of
     the start before them, one for each repetition.  ``energies`` (S, 4), the conserved and the kinetic energy of the
     system, and the kinetic energies of translation (relative to the common center of mass) and of rotation of the
-    bodies.  ``energies`` is None unless asked for; with energies, ``positions`` and ``center`` are given at the end
+    bodies.  ``energies`` is None unless requested; with energies, ``positions`` and ``center`` are given at the end
     only.
     """
 

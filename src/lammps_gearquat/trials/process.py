@@ -1,8 +1,8 @@
 """The process that runs LAMMPS as a library: it follows a deck once, then replays it as trials.
 
 ``python -m lammps_gearquat.trials.process ADDRESS`` connects to the socket of a ``Worker`` and answers its requests
-until the worker is gone.  If there are several ranks, every rank receives the same requests, and answers for the atoms
-that it owns.
+until the worker has ended.  If there are several ranks, every rank receives the same requests, and answers for the
+atoms that it owns.
 """
 
 import os

@@ -166,7 +166,7 @@ def _explained(costs):
 
 
 def _script_lines(deck, costs):
-    """Lines to put into the script for each error that was reached, and advice on the others."""
+    """Lines to put into the script for each error that was reached, and advice for the other errors."""
     lines, reached = [], [row for row in costs.rows if row.choice]
     if not all(row.keep for row in reached):
         lines += map_lines(deck)

@@ -154,7 +154,7 @@ class Worker:
             raise
         for answer in answers:
             if isinstance(answer, Exception):
-                if len(answers) < self.ranks:  # the other ranks wait for this one
+                if len(answers) < self.ranks:  # the other ranks wait for this rank
                     self.end()
                 raise answer
         return answers
