@@ -8,7 +8,7 @@
 
    Before a run, and when the number of large bodies changes, their owners send them to all ranks,
    with their histories.  From then on every rank predicts and corrects large bodies, from the same
-   loads and thus to the same bits, and keeps them while atoms are exchanged: the only message in a
+   loads and thus to the same bits, and keeps them while atoms are exchanged.  The only message in a
    step is the sum of the loads. */
 
 #include "gear_quat_ownership.h"
