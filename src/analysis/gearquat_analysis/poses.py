@@ -279,8 +279,9 @@ class Poses(_FrameTable):
       principal axes, so that q agrees with the fix (except for bodies with equal moments, whose axes are arbitrary); or
       positions (n_atoms, 3) of all atoms, in their order.
     * ``units``: LAMMPS' style of units, if the dump does not have it; energies are in units of this style, or without a
-    * style in mass x velocity^2.  ``potential``: column with potential energies of atoms, given to ``open_dump`` as
-    * well.  ``out``: file (.npy) for the table; without it the table is in memory.
+      style in mass x velocity^2.
+    * ``potential``: column with potential energies of atoms, given to ``open_dump`` as well.
+    * ``out``: file (.npy) for the table; without it the table is in memory.
 
     Results after ``run``, for F frames and B bodies, in units of the run; ``results.table`` has all as one array:
 

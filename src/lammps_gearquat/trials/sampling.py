@@ -3,8 +3,8 @@
 In such runs the error of a trajectory is not meaningful.  Two criteria count: the energy does not drift, and
 translation and rotation have the same temperature.
 
-1.  Short runs of the fix without keywords (it chooses the number of values itself), of the keywords of the user, and of
-the fix of the deck: from the longest known step upwards, until the energy drifts.
+1. Short runs of the fix without keywords (it chooses the number of values itself), of the keywords of the user, and
+   of the fix of the deck: from the longest known step upwards, until the energy drifts.
 2. Longer runs of the cheapest step that may meet the bound.  If it does not, the next shorter step is tried, unless
    another method is cheaper then.
 3. The unchanged deck, for the same time, for comparison.
