@@ -139,7 +139,7 @@ def integrate(problem, times, tolerance=None, columns=None, fixed_step=None):
     """States of a Problem at ``times``, which rise from 0 or fall from it; 0 need not be listed.
 
     Everything is done in the float type of the problem.  ``tolerance`` bounds the error estimate of every step,
-    relative to the largest position, velocity, ...  of any body; it and ``columns`` follow from the float type of the
+    relative to the largest position, velocity, ... of any body; it and ``columns`` follow from the float type of the
     field's forces unless given.  If forces jump, no error estimate helps; in this case a ``fixed_step`` takes its place
     (an upper bound: the time between two of ``times`` is cut into equal parts), and two of them tell the error.
     """

@@ -123,7 +123,7 @@ class Coupling : protected Pointers {
   /// Computes friction and rates from the states and loads of a node, like measure().
   virtual void visit_node(const StartNodes &nodes, int node) = 0;
   virtual void settle(const StartNodes &nodes, int pair) = 0;    ///< local
-  /// Makes histories from the innermost `pairs`. values: of the method.  Local.
+  /// Makes histories from the innermost `pairs`.  values: of the method.  Local.
   virtual void seed(const StartNodes &nodes, int pairs, int values) = 0;
   /// Makes histories from the present alone, after measure(), with `terms` terms for bodies.
   virtual void seed_local(double h, int terms) = 0;

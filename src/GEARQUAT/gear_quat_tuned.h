@@ -17,7 +17,7 @@
    roots of modulus 0.98 and the angle and c_0 of the least drift in liquids (doc/coefficients.md).
 
    Order conditions.  Let the right-hand side be a given function of time and the solution a
-   polynomial of degree N, y_N = h^N/N!  y^(N) = 1 for all times.  The rows then deviate from the
+   polynomial of degree N, y_N = h^N/N! y^(N) = 1 for all times.  The rows then deviate from the
    exact rows, y_j = exact + e_j, by an e_j that is constant above row q - 1 (q: the order of the
    equation), with a constant residual r:
 
