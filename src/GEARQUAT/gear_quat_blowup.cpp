@@ -25,7 +25,7 @@ using namespace GearQuat;
 static constexpr double NONE = std::numeric_limits<double>::infinity();
 
 static constexpr double NEARLY_LINEAR = 0.01;    // smallest moment by the largest
-static constexpr bigint MANY = 10;               // bodies that exchange energy, at least
+static constexpr bigint MANY = 10;               // least number of bodies that exchange energy
 static constexpr double MARGIN = 0.6;    // of the longest step, since later forces may vary faster
 static constexpr double TAIL = 4.0;      // ratio of the fastest thermal rotation to the mean
 

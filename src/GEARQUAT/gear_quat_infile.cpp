@@ -34,7 +34,7 @@ struct Line {
   GivenBody body;
 };
 
-/// Among the numbers of a GivenBody.
+/// Positions among the numbers of a GivenBody.
 enum { MASS, INERTIA = 4 };
 static constexpr int NUMBERS = GivenBody::NUMBERS;
 static_assert(offsetof(GivenBody, image) == NUMBERS * sizeof(double), "as many words in a line");

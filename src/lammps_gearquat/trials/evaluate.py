@@ -56,7 +56,7 @@ class Price(Point):
     aim: float = 0.0
 
 
-#: steeper than this, a stability limit rather than the order determines the error
+#: if a slope is steeper than this, a stability limit rather than the order determines the error
 CLIFF = 16.0
 #: a step is close to another step that is larger by less than this factor
 CLOSE = 1.1
