@@ -88,7 +88,7 @@ struct Friction {
   double translation[3] = {0.0, 0.0, 0.0};
   double rotation = 0.0;
   /// Velocity of a motion of all bodies that does not decay, and the difference of its acceleration
-  /// by the present forces from the one in the predicted rows.
+  /// by the present forces from the acceleration in the predicted rows.
   double common[3] = {0.0, 0.0, 0.0}, unforeseen[3] = {0.0, 0.0, 0.0};
   bool implicit = false;    ///< residuals are solved for the friction that they change
 
