@@ -78,7 +78,7 @@ TARGETS = {
     COLD[1]: 0.5,
 }
 #: number of runs between two looks at the clock
-BATCH = 6
+BATCH = 4
 
 
 @dataclass(frozen=True)
