@@ -11,9 +11,10 @@
      z^4 = sum (|h^4 y''''|^2 + |h^5 y'''''|^2) / sum (|h^2 y''|^2 + |h^3 y'''|^2).
 
    For a single vibration z is exact at any phase; for many vibrations z corresponds to the upper
-   end of their spectrum.  A start has computed these derivatives.  The rows of a history cannot
-   replace them: with tuned coefficients the errors of the higher rows make z up to twice as large.
-   Where derivatives are unknown, the mean square frequency of rotations, the ratio of the sums of
+   end of their spectrum.  Accelerations that change velocities by less than rounding count as none.
+   A start has computed these derivatives.  The rows of a history cannot replace them: with tuned
+   coefficients the errors of the higher rows make z up to twice as large.  Where derivatives are
+   unknown, the mean square frequency of rotations, the ratio of the sums of
    torque^2/I and I omega^2, is used instead.
 
    More values give a higher order, but a narrower range of frequencies that conserves energy.
@@ -38,8 +39,9 @@ namespace LAMMPS_NS::GearQuat {
 /// Sums over bodies, and over ranks by the host, that measure the frequencies of a motion.
 class MotionSums {
  public:
-  /// sums of (z/h)^4, torque^2/I and I omega^2, which add up over bodies
-  static constexpr int SUMS = 4;
+  /// sums over bodies: numerator and denominator of (z/h)^4, torque^2/I and I omega^2, and twice the
+  /// kinetic energy of bodies with derivatives
+  static constexpr int SUMS = 5;
   double sums[SUMS] = {};
   /// |omega|^2 of the body that turns fastest; its maximum is taken over bodies
   double omega2 = 0.0;
@@ -48,7 +50,7 @@ class MotionSums {
   void add(const RigidBody &body, const BodyState &state, const TaylorSeries &series, double step)
   {
     const double *rows[] = {series.c[2], series.c[3], series.c[4], series.c[5]};
-    if (series.terms > 4) add_derivatives(body, rows, 3, series.terms > 5 ? 4 : 3, step);
+    if (series.terms > 4) add_derivatives(body, state, rows, 3, series.terms > 5 ? 4 : 3, step);
     add_spin(body, state);
   }
   /// Adds only the angular velocity of a body.
@@ -80,7 +82,7 @@ class MotionSums {
       size[3][i] = (d - a + 3.0 * (b - c)) / 60.0;
     }
     const double *derivatives[] = {size[0], size[1], size[2], size[3]};
-    add_derivatives(body, derivatives, 3, 4, h);
+    add_derivatives(body, state, derivatives, 3, 4, h);
     add_spin(body, state);
   }
   /// The fast edge from its value by differences, which is 2 sin(z/2) for a vibration of any phase.
@@ -93,23 +95,29 @@ class MotionSums {
   double fast_edge(double h) const
   {
     const double size = std::fabs(h);
-    if (sums[1] > 0.0) return size * std::pow(sums[0] / sums[1], 0.25);
+    if (knows_derivatives(h)) return size * std::pow(sums[0] / sums[1], 0.25);
     if (sums[3] > 0.0) return EDGE_BY_MEAN * size * std::sqrt(sums[2] / sums[3]);
     return sums[2] > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
   }
   /// True if the fast edge is from derivatives.
-  bool knows_derivatives() const { return sums[1] > 0.0; }
+  bool knows_derivatives(double h) const
+  {
+    return sums[1] > 0.0 && h * h * sums[1] > LEAST_CHANGE * LEAST_CHANGE * sums[4];
+  }
   double turn(double h) const { return std::fabs(h) * std::sqrt(omega2); }
 
  private:
   /// 1.75 in SPC/E at 300 K, 4 and more in fluids whose bodies collide rarely.  A value that is too
   /// large costs only accuracy, which a start without derivatives does not have.
   static constexpr double EDGE_BY_MEAN = 3.0;
+  /// Changes of velocities in a step, relative to the velocities, that are not larger than this are
+  /// from rounding: the forces between atoms of a body cancel only up to rounding.
+  static constexpr double LEAST_CHANGE = 1.0e-10;
 
   /// rows: 2 to 5, h^k/k! times the derivatives; `known` of them are known.  quaternion: its
   /// column.
-  void add_derivatives(const RigidBody &body, const double *const *rows, int quaternion, int known,
-                       double h)
+  void add_derivatives(const RigidBody &body, const BodyState &state, const double *const *rows,
+                       int quaternion, int known, double h)
   {
     constexpr double FACTORIAL[] = {2.0, 6.0, 24.0, 120.0};
     const double *inertia = body.inertia;
@@ -123,6 +131,8 @@ class MotionSums {
     const double per_h4 = 1.0 / (h * h * h * h);    // in units of y''
     sums[0] += per_h4 * per_h4 * (size[2] + size[3]);
     sums[1] += per_h4 * (size[0] + size[1]);
+    sums[4] += body.mass * dot3(state.velocity, state.velocity);
+    for (int k = 0; k < 3; ++k) sums[4] += inertia[k] * state.omega_body[k] * state.omega_body[k];
   }
   void add_spin(const RigidBody &body, const BodyState &state)
   {
@@ -142,6 +152,7 @@ struct ChoiceOfValues {
   double damping = 0.0;       ///< part of a momentum that is damped by forces in a step
   double friction = 0.0;      ///< of a coupling, times the step
   bool may_be_gear = true;    ///< the corrector may be changed, too
+  bool automatic = true;      ///< the number of values may be chosen
 
   enum class Reason { FORMULATION, MOTION, NOISE, DAMPING, FRICTION };
   struct Choice {
@@ -155,10 +166,15 @@ struct ChoiceOfValues {
 
   static constexpr double EDGE_OF_NINE = 0.25, TURN_OF_NINE = 0.4;
   static constexpr double LONGEST_EDGE = 0.6, LONGEST_TURN = 0.5;
-  static constexpr double ADVISED_EDGE = 0.5, ADVISED_TURN = 0.4;
+  static constexpr double ADVISED_TURN = 0.4;
 
   // the same for turns in the first formulation, with eight values
   static constexpr double FIRST_LONGEST_TURN = 0.25, FIRST_ADVISED_TURN = 0.2;
+
+  // the longest edge of other schemes as a part of their fastest stable oscillation, which is
+  // LONGEST_EDGE for the most permissive of the schemes above; and the advised edge as a part of the
+  // longest one
+  static constexpr double LONGEST_PART = 2.0 / 3.0, ADVISED_PART = 5.0 / 6.0;
 
   static constexpr double BAND = 1.3;
 
@@ -193,14 +209,22 @@ struct ChoiceOfValues {
     return choice;
   }
 
-  /// True if a step is too long for any number of values; only with tuned coefficients.
-  bool too_long(const Scheme &scheme) const { return scheme.tuned && advised_part(scheme) < 1.0; }
+  /// True if a longer step does not require another number of values than the chosen one.
+  bool chooses_longest(const Scheme &scheme) const
+  {
+    return automatic && scheme.tuned && !scheme.first();
+  }
+  /// True if a step is too long for this scheme, or, if the number of values may be chosen, for any.
+  bool too_long(const Scheme &scheme) const { return advised_part(scheme) < 1.0; }
   /// A step that is not too long, as a part of the current step.
   double advised_part(const Scheme &scheme) const
   {
-    if (scheme.first()) return turn > FIRST_LONGEST_TURN ? FIRST_ADVISED_TURN / turn : 1.0;
-    return std::min(shakes() ? ADVISED_EDGE / edge : 1.0,
-                    turn > LONGEST_TURN ? ADVISED_TURN / turn : 1.0);
+    const double longest = shakes() ? longest_edge(scheme) : HUGE_VAL;
+    const double by_edge = edge > longest ? ADVISED_PART * longest / edge : 1.0;
+    if (!automatic || !scheme.tuned) return by_edge;
+    const double most = scheme.first() ? FIRST_LONGEST_TURN : LONGEST_TURN;
+    const double advised = scheme.first() ? FIRST_ADVISED_TURN : ADVISED_TURN;
+    return std::min(by_edge, turn > most ? advised / turn : 1.0);
   }
 
   /// True if the friction of forces is too strong for this scheme.
@@ -218,8 +242,15 @@ struct ChoiceOfValues {
   }
 
  private:
-  /// Random forces cause no vibrations.
-  bool shakes() const { return exact && noise == Noise::NONE && edge > LONGEST_EDGE; }
+  /// Random forces cause no vibrations.  The edge of motion that only friction slows down is the part
+  /// of a momentum that is lost in a step.
+  bool shakes() const { return exact && noise == Noise::NONE && edge > 2.0 * damping; }
+
+  /// Radians in a step.
+  double longest_edge(const Scheme &scheme) const
+  {
+    return chooses_longest(scheme) ? LONGEST_EDGE : LONGEST_PART * fastest_oscillation(scheme);
+  }
 
   Scheme by_motion(Scheme scheme, int present) const
   {

@@ -36,13 +36,14 @@ ChoiceOfValues Motion::scene_of(const MotionSums &here) const
   all.omega2 = over_ranks(MPI_MAX, all.omega2, world);
   ChoiceOfValues scene;
   scene.edge = bodies.number() > 0 ? all.fast_edge(step.length()) : HUGE_VAL;
-  scene.exact = all.knows_derivatives();
+  scene.exact = all.knows_derivatives(step.length());
   scene.turn = all.turn(step.length());
   scene.noise = noise_of_forces(lmp, [this](int i) {
     return ownership.in_body(i);
   });
   scene.damping = damping;
   scene.may_be_gear = !args.states("corrector");
+  scene.automatic = args.automatic_values;
   return scene;
 }
 
@@ -107,24 +108,32 @@ void Motion::warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &schem
   if (!scene.too_long(scheme) || advised * ChoiceOfValues::BAND > advised_step) return;
   advised_step = advised;
   if (comm->me != 0) return;
-  error->warning(
-      FLERR,
-      "Fix gear/quat {}: {}vibrations of {:.2g} and rotations of {:.2g} radians in a step are more "
-      "than any number of values can follow for long; use a time step of {:g} or shorter{}",
-      fix->id, begins ? "" : fmt::format("at step {} ", update->ntimestep), scene.edge, scene.turn,
-      rounded_down(advised),
-      begins ? ", or, if atoms overlap, begin with a run with keywords tolerance and temp" : "");
+  const std::string who = scene.chooses_longest(scheme)
+      ? "any number of values"
+      : fmt::format("{} values of formulation {} and corrector {}", scheme.values(),
+                    scheme.first() ? "first" : "second", scheme.tuned ? "tuned" : "gear");
+  const char *otherwise = "";
+  if (begins)
+    otherwise = ", or, if atoms overlap, begin with a run with keywords tolerance and temp";
+  else if (!scene.chooses_longest(scheme) && !scheme.first())
+    otherwise = ", or leave out keywords values and corrector";
+  error->warning(FLERR,
+                 "Fix gear/quat {}: {}vibrations of {:.2g} and rotations of {:.2g} radians in a "
+                 "step are more than {} can follow for long; use a time step of {:g} or shorter{}",
+                 fix->id, begins ? "" : fmt::format("at step {} ", update->ntimestep), scene.edge,
+                 scene.turn, who, rounded_down(advised), otherwise);
 }
 
 void Motion::look_at_vibrations()
 {
-  if (!args.automatic_values || step.tolerance || !vibrations.note_step(step.length())) return;
+  if (step.tolerance || !vibrations.note_step(step.length())) return;
   ChoiceOfValues scene = scene_of(vibrations.sums());
   scene.edge = MotionSums::true_edge(scene.edge);
   if (!scene.exact) return;
+  edge_rate = scene.edge / std::fabs(step.length());
   if (scene.too_long(step.scheme()))
     warn_of_vibrations(scene, step.scheme(), false);
-  else
+  else if (args.automatic_values)
     warn_of_values(scene);
 }
 
@@ -141,26 +150,26 @@ void Motion::warn_of_values(const ChoiceOfValues &scene)
     error->warning(FLERR,
                    "Fix gear/quat {}: at step {} vibrations of {:.2g} and rotations of {:.2g} "
                    "radians in a step require {} values, but histories began with {} for a slower "
-                   "motion; use keyword values {}, or define the fix again before the next run",
+                   "motion; use keyword values {}, or a new run, which chooses again",
                    fix->id, update->ntimestep, scene.edge, scene.turn, suits.scheme.values(),
                    present, suits.scheme.values());
 }
 
-/// Rank 0 warns once.  In water at 1 fs, a single pass is unstable with 7, 9 and 11 tuned values, with
-/// and without projection, and stable with 5, 6, 8, 10 and 12.  Collective.
+/// Rank 0 warns once.  A single pass is unstable with 7, 9 and 11 tuned values in water at 1 fs and
+/// of free tops, with and without projection, and with 5 values in droplets.  It is stable with even
+/// numbers.  Collective.
 void Motion::warn_of_single_pass()
 {
   const Scheme &scheme = step.scheme();
   const int values = scheme.values();
   if (warned_pass || scheme.passes != 1 || !scheme.tuned || scheme.first()) return;
-  if (values < 7 || values % 2 == 0 || bodies.number() < 2 || !makes_forces(lmp, fix)) return;
+  if (values % 2 == 0) return;
   if (!over_ranks(MPI_MAX, (int) !bodies.tops.empty(), world)) return;
   warned_pass = true;
   if (comm->me == 0)
     error->warning(FLERR,
-                   "Fix gear/quat {}: with passes 1 and {} tuned values rotations are unstable in "
-                   "liquids and other systems with strong torques; leave out keyword passes, or "
-                   "use passes 2",
+                   "Fix gear/quat {}: with passes 1 and {} tuned values rotations can become "
+                   "unstable; leave out keyword passes, or use passes 2",
                    fix->id, values);
 }
 
@@ -212,8 +221,7 @@ void Motion::tell_friction()
 }
 
 /// Returns the reason to start histories again with another number of values, null for none.
-/// Reasons are a change of the step, of a rotation or of forces.  Vibrations are from the last
-/// start, since only a start measures them.  Collective.
+/// Reasons are a change of the step, of a rotation, of vibrations or of forces.  Collective.
 const char *Motion::another_scheme_suits()
 {
   if (!args.automatic_values || resumed) return nullptr;

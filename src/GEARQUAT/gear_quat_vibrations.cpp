@@ -18,7 +18,7 @@ static constexpr bigint FIRST_WINDOW = 100;
 
 void Vibrations::begin_run()
 {
-  end = update->firststep;
+  first = update->firststep;
   choose_end();
 }
 
@@ -35,6 +35,7 @@ void Vibrations::choose_end()
 
 bool Vibrations::note_step(double h)
 {
+  if (update->firststep != first) begin_run();
   if (update->ntimestep <= end - MotionSums::LEVELS || update->ntimestep > end) return false;
   record(h);
   return update->ntimestep == end;

@@ -29,6 +29,7 @@ class Vibrations : protected Pointers {
  public:
   Vibrations(LAMMPS *lmp, const Bodies &bodies) : Pointers(lmp), bodies(bodies) {}
 
+  /// LAMMPS sets up a run.  Runs without a setup are noticed by their first step.
   void begin_run();
   /// After a step of length h, with its states and loads.  True if a window ends.
   bool note_step(double h);
@@ -41,6 +42,7 @@ class Vibrations : protected Pointers {
     std::array<MotionSums::Acceleration, MotionSums::LEVELS> rows = {};
   };
   const Bodies &bodies;
+  bigint first = -1;                             ///< first step of the present run
   bigint end = 0;                                ///< last step of the next window
   double width = 0.0;                            ///< step in the window
   std::unordered_map<tagint, Record> records;    ///< by the IDs of bodies

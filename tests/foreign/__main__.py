@@ -117,8 +117,7 @@ def try_suffixes(report, wheel, tree, words):
 def try_decks(report, source, programs, release, only):
     """Verdicts on all decks of one release; those that are not reached in time are "not run"."""
     begin, verdicts = time.monotonic(), []
-    pages = ("src/fix_gear_quat.rst", "howto/from_rigid.md")
-    manual = " ".join(" ".join((ROOT / "doc" / name).read_text().split()) for name in pages)
+    manual = decks.pages_of_reasons(ROOT)
     # folders with most rigid fixes first
     for path in sorted(decks.decks_of(source), key=lambda path: path.parts[1] != "rigid"):
         if not re.search(only, str(path)):
@@ -143,6 +142,8 @@ def run_part(part, report, words):
     if part == "check":
         for what, seen in selfcheck.all_errors(wheel, SCRATCH / "check"):
             report.add(seen, f"{what}, and nothing is noticed")
+        for name in selfcheck.missing_reasons(decks.pages_of_reasons(ROOT)):
+            report.add(False, f"no page has the reason for a refusal: {name}")
         return None
     if part == "styles":
         return styles_of(report, wheel, tree, words)

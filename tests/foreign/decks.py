@@ -41,9 +41,9 @@ REASONS = (
     (
         r"keyword langevin of the rigid fixes",
         "keyword langevin",
-        r"There are no keywords \*langevin\*",
+        r"Keywords such as \*langevin\*",
     ),
-    (r"keyword gravity of the rigid fixes", "keyword gravity", r"no keywords [^.]*\*gravity\*"),
+    (r"keyword gravity of the rigid fixes", "keyword gravity", r"\*gravity\* are refused"),
     (r"bodyforces early", "bodyforces early", r"\*Fix_modify bodyforces\* is always \*late\*"),
     (
         r"has no fix_modify temp",
@@ -82,7 +82,7 @@ REASONS = (
         "shapes, in a plug-in",
         r"Ellipsoids, lines and triangles need headers",
     ),
-    (r"minimiz", "energy minimization", r"refuses\s+:doc:`energy minimization"),
+    (r"cannot be used with min_style", "another minimizer", r"\*sd\* \(other styles are refused\)"),
 )
 
 #: reasons why an unchanged deck does not run here: message of LAMMPS, and text of the page
@@ -135,6 +135,12 @@ class DeckVerdict:
     #: error of our fix at the step of the deck, in units of the error of the original fix
     ratio: float = float("nan")
     notes: list = field(default_factory=list)
+
+
+def pages_of_reasons(root):
+    """The text of the pages that have the reasons, with single spaces."""
+    pages = ("src/fix_gear_quat.rst", "howto/from_rigid.md")
+    return " ".join(" ".join((root / "doc" / name).read_text(encoding="utf-8").split()) for name in pages)
 
 
 def decks_of(source):

@@ -1,9 +1,10 @@
 """Tests of the judge: it has to detect errors of 1 % and surplus degrees of freedom."""
 
 import copy
+import re
 from dataclasses import replace
 
-from . import beside, scene, styles, suffixes, thermostat
+from . import beside, decks, scene, styles, suffixes, thermostat
 
 #: style -> its arguments, wrong by 1 %
 WRONG = {
@@ -23,6 +24,11 @@ def all_errors(engine, folder):
     yield from wrong_forces(engine, folder)
     yield from wrong_thermostats(engine, folder)
     yield from wrong_variant(engine, folder)
+
+
+def missing_reasons(text):
+    """Names of the refusals whose reasons the text does not have."""
+    return [name for _, name, words in decks.REASONS if not re.search(words.replace("STYLE", "heat"), text)]
 
 
 def wrong_forces(engine, folder):

@@ -146,11 +146,11 @@ def test_the_friction_of_a_thermostat(lmp_tree, data):
 
 @pytest.mark.parametrize("words, dt", [("", 8.0), ("formulation first", 16.0)])
 def test_a_step_too_long_for_any(lmp_tree, data, words, dt):
-    """Formulation second judges vibrations and rotations, formulation first only rotations."""
+    """Both formulations judge vibrations and rotations."""
     result = run(lmp_tree, data, words, dt=dt, steps=1)
-    step = re.search(r"more than any number of values can follow for long; use a time step of ([\d.]+)", result.stdout)
+    step = re.search(r"more than .* can follow for long; use a time step of ([\d.]+)", result.stdout)
     assert 1.0 < float(step[1]) < dt
-    assert "more than any" not in run(lmp_tree, data, words, dt=float(step[1]), steps=1).stdout
+    assert "can follow for long" not in run(lmp_tree, data, words, dt=float(step[1]), steps=1).stdout
 
 
 @pytest.mark.parametrize("ranks", [2, 4])

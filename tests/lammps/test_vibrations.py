@@ -28,7 +28,7 @@ fix move all gear/quat molecule {words}
 COLD = "temp 0.3 0.3 0.5"
 AGAIN = "\nunfix move\nfix move all gear/quat molecule\nrun 1"
 BEGINS = re.compile(r"Fix gear/quat move: \d values, for vibrations of (\S+) and")
-TOO_FAST = re.compile(r"move: at step (\d+) vibrations of (\S+) and rotations of \S+ radians in a step are more than any")
+TOO_FAST = re.compile(r"move: at step (\d+) vibrations of (\S+) and rotations of \S+ radians in a step are more than (.*) can follow")
 MORE = re.compile(r"move: at step (\d+) vibrations of (\S+) and rotations of \S+ radians in a step require 5 values")
 ADVICE = re.compile(r"use a time step of (\S+) or shorter")
 
@@ -41,14 +41,14 @@ def condense(lmp, dt, run, words=COLD, ranks=1):
 def test_faster_vibrations_are_warned_of(lmp_wheel):
     """There is one warning in several runs, with a step that is short enough; a new start measures the same
     vibrations."""
-    result = condense(lmp_wheel, 0.02, "run 1000\nrun 2000 every 500 NULL\nrun 0" + AGAIN)
-    first, later = map(float, BEGINS.findall(result.stdout))
-    ((step, edge),) = TOO_FAST.findall(result.words)
-    assert first < 0.2 and float(edge) > 0.6 and int(step) <= 3000
+    result = condense(lmp_wheel, 0.024, "run 50\nrun 2950 every 500 NULL\nrun 0" + AGAIN)
+    first, *_, later = map(float, BEGINS.findall(result.stdout))
+    ((step, edge, what),) = TOO_FAST.findall(result.words)
+    assert what == "any number of values" and first < 0.2 and float(edge) > 0.6 and int(step) <= 3000
     assert later == pytest.approx(float(edge), rel=0.35)
     advised = float(ADVICE.findall(result.words)[0])
-    assert advised == pytest.approx(0.02 * 0.5 / float(edge), rel=0.06)
-    assert not TOO_FAST.search(condense(lmp_wheel, advised, "run 3000").words)
+    assert advised == pytest.approx(0.024 * 0.5 / float(edge), rel=0.06)
+    assert not TOO_FAST.search(condense(lmp_wheel, advised, "run 50\nrun 2950").words)
 
 
 def test_a_number_of_values_that_suits_no_more(lmp_wheel):
@@ -77,7 +77,6 @@ def test_bodies_on_several_ranks(lmp_wheel):
         (0.025, "run 0", COLD),
         (0.025, "run 3", COLD),
         (0.02, "run 500", "tolerance 1e-5 " + COLD),
-        (0.02, "run 2000", "values 5 " + COLD),
         (0.013, "fix l all langevin 0.5 0.5 1.0 4711\nrun 3000", ""),
     ],
 )
@@ -87,6 +86,63 @@ def test_no_reason_to_warn(lmp_wheel, dt, run, words):
 
 
 def test_the_motion_is_not_changed(lmp_wheel):
-    """Where the number of values is stated, nothing is measured."""
+    """A choice and a measurement leave trajectories as they are."""
     automatic, stated = (condense(lmp_wheel, 0.013, "run 1000", words).thermo[0] for words in (COLD, "values 9 " + COLD))
     assert automatic["TotEng"] == stated["TotEng"]
+
+
+@pytest.mark.parametrize(
+    "words, dt, what",
+    [
+        ("values 7", 0.02, "7 values of formulation second and corrector tuned"),
+        ("corrector gear", 0.013, "8 values of formulation second and corrector gear"),
+        ("formulation first", 0.013, "8 values of formulation first and corrector tuned"),
+    ],
+)
+def test_a_method_that_is_stated(lmp_wheel, words, dt, what):
+    """The advised step conserves the energy, and the step that is warned of does not."""
+    words = f"{words} {COLD}"
+    told = condense(lmp_wheel, dt, "run 3000", words)
+    (_, _, found), *_ = TOO_FAST.findall(told.words)
+    assert found == what
+    advised = float(ADVICE.findall(told.words)[-1])
+    short = condense(lmp_wheel, advised, "run 3000", words)
+    assert not TOO_FAST.search(short.words)
+
+
+def test_runs_without_a_setup(lmp_wheel):
+    """As in one long run, if the short ones are long enough for their windows."""
+    loop = "run 100\n" + 14 * "run 100 pre no post no\n"
+    assert MORE.search(condense(lmp_wheel, 0.013, loop).words) or TOO_FAST.search(condense(lmp_wheel, 0.013, loop).words)
+
+
+def test_the_next_run_chooses_again(lmp_wheel):
+    result = condense(lmp_wheel, 0.02, "run 200\nrun 10")
+    assert MORE.search(result.words)
+    assert re.findall(r"move: (\d) values, for", result.stdout) == ["9", "5"]
+    assert "the motion suits another number of values, histories start anew" in result.stdout
+
+
+LONE = """
+units lj
+atom_style molecular
+atom_modify map array
+region box block 0 60 0 60 0 60
+create_box 1 box
+mass 1 1
+create_atoms 1 single 30.1 30.2 30.3
+create_atoms 1 single 30.7 30.3 30.4
+set group all mol 1
+pair_style lj/gromacs 2.0 2.5
+pair_coeff * * 1 1
+velocity all set 0 0 1
+fix move all gear/quat molecule
+timestep 0.005
+run 1000
+"""
+
+
+def test_forces_that_cancel_up_to_rounding(lmp_wheel):
+    """Between the atoms of a lone body, whose vibrations they are not."""
+    result = lmp_wheel.succeed(LONE)
+    assert "vibrations of 0 and" in result.stdout and not TOO_FAST.search(result.words)
