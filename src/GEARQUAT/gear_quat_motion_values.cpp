@@ -126,11 +126,14 @@ void Motion::warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &schem
 
 void Motion::look_at_vibrations()
 {
-  if (step.tolerance || !vibrations.note_step(step.length())) return;
+  if (step.tolerance) return;
+  // short runs with a stated number are not examined, so that effects that are off are free
+  if (!args.automatic_values && update->laststep - update->firststep < Vibrations::FIRST_WINDOW)
+    return;
+  if (!vibrations.note_step(step.length())) return;
   ChoiceOfValues scene = scene_of(vibrations.sums());
   scene.edge = MotionSums::true_edge(scene.edge);
   if (!scene.exact) return;
-  edge_rate = scene.edge / std::fabs(step.length());
   if (scene.too_long(step.scheme()))
     warn_of_vibrations(scene, step.scheme(), false);
   else if (args.automatic_values)
@@ -150,7 +153,7 @@ void Motion::warn_of_values(const ChoiceOfValues &scene)
     error->warning(FLERR,
                    "Fix gear/quat {}: at step {} vibrations of {:.2g} and rotations of {:.2g} "
                    "radians in a step require {} values, but histories began with {} for a slower "
-                   "motion; use keyword values {}, or a new run, which chooses again",
+                   "motion; use keyword values {}, or define the fix again before the next run",
                    fix->id, update->ntimestep, scene.edge, scene.turn, suits.scheme.values(),
                    present, suits.scheme.values());
 }
@@ -221,7 +224,8 @@ void Motion::tell_friction()
 }
 
 /// Returns the reason to start histories again with another number of values, null for none.
-/// Reasons are a change of the step, of a rotation, of vibrations or of forces.  Collective.
+/// Reasons are a change of the step, of a rotation or of forces.  Vibrations are from the last
+/// start: runs that are continued from a restart file have no others.  Collective.
 const char *Motion::another_scheme_suits()
 {
   if (!args.automatic_values || resumed) return nullptr;

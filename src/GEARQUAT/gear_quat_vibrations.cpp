@@ -14,8 +14,6 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-static constexpr bigint FIRST_WINDOW = 100;
-
 void Vibrations::begin_run()
 {
   first = update->firststep;

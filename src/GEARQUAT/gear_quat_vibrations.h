@@ -29,6 +29,8 @@ class Vibrations : protected Pointers {
  public:
   Vibrations(LAMMPS *lmp, const Bodies &bodies) : Pointers(lmp), bodies(bodies) {}
 
+  static constexpr int FIRST_WINDOW = 100;    ///< steps
+
   /// LAMMPS sets up a run.  Runs without a setup are noticed by their first step.
   void begin_run();
   /// After a step of length h, with its states and loads.  True if a window ends.
