@@ -87,7 +87,7 @@ TEST(FastEdge, FollowsFromTheAccelerationsOfFourSteps)
       const double edge = MotionSums::true_edge(sums.fast_edge(h)), exact = std::fabs(h) * OMEGA;
       EXPECT_NEAR(edge, exact, 1e-6 * exact) << phase;
       EXPECT_GT(std::fabs(edge / (1.01 * exact) - 1.0), 0.005);
-      EXPECT_TRUE(sums.knows_derivatives());
+      EXPECT_TRUE(sums.knows_derivatives(h));
     }
   EXPECT_NEAR(MotionSums::true_edge(5.0), 3.14159265358979, 1e-12);    // forces without a pattern
 }
@@ -243,7 +243,8 @@ TEST(Choice, LongStepsAreTold)
   EXPECT_FALSE(told(0.61, 0.0, false, Noise::NONE, SECOND));
   EXPECT_FALSE(told(0.61, 0.0, true, Noise::RANDOM, SECOND));
   EXPECT_TRUE(told(0.0, 0.51, false, Noise::RANDOM, SECOND));
-  EXPECT_FALSE(told(0.61, 0.24, true, Noise::NONE, FIRST));
+  EXPECT_FALSE(told(0.32, 0.24, true, Noise::NONE, FIRST));
+  EXPECT_TRUE(told(0.34, 0.24, true, Noise::NONE, FIRST));
   EXPECT_TRUE(told(0.0, 0.26, false, Noise::NONE, FIRST));
   ChoiceOfValues both = scene(1.0, 1.0);
   both.exact = true;
@@ -251,7 +252,42 @@ TEST(Choice, LongStepsAreTold)
   EXPECT_DOUBLE_EQ(both.advised_part(automatic(FIRST)), 0.2);
   both.turn = 0.1;
   EXPECT_DOUBLE_EQ(both.advised_part(automatic(SECOND)), 0.5);
-  EXPECT_DOUBLE_EQ(both.advised_part(automatic(FIRST)), 1.0);
+  EXPECT_NEAR(both.advised_part(automatic(FIRST)), 5.0 / 6.0 / 3.0, 1e-12);
+}
+
+TEST(Choice, AStatedNumberHasALimitOfItsOwn)
+{
+  // two thirds of the fastest stable vibration
+  const auto longest = [](int values, bool is_tuned) {
+    Scheme scheme = automatic(SECOND, is_tuned);
+    scheme.rows = values;
+    ChoiceOfValues stated = scene(0.01, 0.6);
+    stated.exact = true;
+    stated.automatic = false;
+    while (!stated.too_long(scheme)) stated.edge += 0.01;
+    EXPECT_NEAR(stated.advised_part(scheme), 5.0 / 6.0, 0.04);
+    stated.damping = 0.6 * stated.edge;    // the motion of friction is no vibration
+    EXPECT_FALSE(stated.too_long(scheme));
+    return stated.edge;
+  };
+  EXPECT_NEAR(longest(9, true), 0.40, 0.011);
+  EXPECT_NEAR(longest(7, true), 0.47, 0.011);
+  EXPECT_NEAR(longest(5, true), 0.63, 0.011);
+  EXPECT_NEAR(longest(8, false), 0.31, 0.011);
+}
+
+TEST(FastEdge, IsNoneOfForcesThatCancelUpToRounding)
+{
+  BodyState s = {};
+  s.q[3] = 1.0;
+  s.velocity[0] = 1.0;
+  for (const double size : {1e-18, 1e-6}) {
+    const MotionSums::Acceleration rows[] = {{size}, {-size}, {size}, {size}};
+    MotionSums sums;
+    sums.add(BALL, s, rows, 0.01);
+    EXPECT_EQ(sums.knows_derivatives(0.01), size > 1e-12) << size;
+    EXPECT_EQ(sums.fast_edge(0.01) > 0.0, size > 1e-12) << size;
+  }
 }
 
 // --- is it the better choice?

@@ -23,8 +23,7 @@ double remains(const Scheme &scheme, double friction)
   BodyState state = start;
   for (int step = 0; step < 5000; ++step) {
     integrator.predict(rows.data());
-    auto pending =
-        integrator.begin(Load{}, integrator.axes_of(rows.data()).data(), rows.data());
+    auto pending = integrator.begin(Load{}, integrator.axes_of(rows.data()).data(), rows.data());
     for (int pass = 0; pass < 2; ++pass)
       integrator.correct_pass(body, Load{}, implicit, rows.data(), pending);
     integrator.finish(Load{}, rows.data(), pending);
@@ -54,6 +53,18 @@ TEST(FrictionLimit, IsWhereAFreeBodyBecomesUnstable)
         ++found;
       }
   EXPECT_GT(found, 15);
+}
+
+TEST(Friction, AnErrorThatVanishesByChanceIsNoticed)
+{
+  Scheme scheme = scheme_of(SECOND, 4, 2);
+  double last = 0.0;
+  for (double part = 0.05; part < 0.54; part += 0.05) {
+    EXPECT_GE(friction_error(scheme, part), 0.99 * last) << part;    // of a grid below part
+    last = friction_error(scheme, part);
+  }
+  EXPECT_LT(std::fabs(friction_response(scheme, 0.5) - 1.0), 0.05);
+  EXPECT_GT(friction_error(scheme, 0.5), 0.1);
 }
 
 TEST(Friction, ABoundAndATrialHoldForAGas)
