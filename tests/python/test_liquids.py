@@ -117,8 +117,8 @@ def test_page_and_pictures(tmp_path):
     data = results({(*key, 2.0): -0.27}, [(*key, 3.0)])
     finding = study.find(data)
     rows = {row[0]: row[1:] for row in finding.tables["drift_spce"].rows}
-    assert float(rows[plan.NAMES[VALUES[9]]][1].split()[0]) == pytest.approx(-0.27, rel=1e-2)
-    assert rows[plan.NAMES[VALUES[9]]][3] == "1 of 3 lost, after 0.2 ps"
+    assert float(rows[plan.NAMES[VALUES[9]]][0].split()[0]) == pytest.approx(-0.27, rel=1e-2)
+    assert rows[plan.NAMES[VALUES[9]]][2] == "1 of 3 lost, after 0.2 ps"
     assert render("liquids.md.j2", study.STUDY, finding, "Somewhere.").count("1 of 3 lost") == 2
     heights = [row[-2] for row in finding.tables["heavy"].rows]
     assert heights[:2] == ["3.00 ± 0.71", "+0.1000 ± 0.0000"]

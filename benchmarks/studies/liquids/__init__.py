@@ -20,7 +20,7 @@ from . import judging
 from . import quantities as of
 from .judging import UNIT, lost, predicted
 from .plan import DEFAULT, FAMILIES, FLOOR_STEP, FLOORS, FORESEEN, HEAVY, LIQUIDS, MAIN, METHODS, NAMES
-from .plan import NVE_SMALL, SCENES, SINGLE, STEPS, VALUES
+from .plan import NVE_SMALL, SCENES, SINGLE, STEPS, VALUES, WATERS
 from .runs import measure
 
 #: the axis of drifts is linear below this size
@@ -54,7 +54,7 @@ def show_state(runs, liquid):
 
 # --- tables ---------------------------------------------------------------------------------------
 def scene_tables(results, scene):
-    """Table of drifts with a column per step, and table of other quantities with a row per method and step."""
+    """Table of drifts with a column per step; for water, table of other quantities with a row per method and step."""
 
     def cell(method, dt):
         runs = results.runs.get((scene.key, method.key, dt))
@@ -67,10 +67,10 @@ def scene_tables(results, scene):
         for dt in scene.methods[method].steps
     ]
     columns = ["fluctuation, kcal/mol", "T translation, K", "T rotation, K", "translation − rotation, K"]
-    return {
-        f"drift_{scene.key}": Table((f"drift, {UNIT}", *(f"{dt:g} fs" for dt in STEPS)), drifts),
-        f"state_{scene.key}": Table(("method", "step, fs", *columns, "pressure, atm"), states),
-    }
+    tables = {f"drift_{scene.key}": Table((f"drift, {UNIT}", *(f"{dt:g} fs" for dt in STEPS)), drifts)}
+    if scene.liquid in WATERS:
+        tables[f"state_{scene.key}"] = Table(("method", "step, fs", *columns, "pressure, atm"), states)
+    return tables
 
 
 def prediction_table(results):
@@ -286,6 +286,7 @@ def find(results):
         "advice": advice(results).lines,
         "plan": results.plan,
         "scenes": SCENES,
+        "waters": [scene for scene in SCENES if scene.liquid in WATERS],
         "main": MAIN,
         "heavy": HEAVY,
         "names": {"default": NAMES[DEFAULT]},

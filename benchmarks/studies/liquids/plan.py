@@ -70,9 +70,9 @@ class Forces:
 
 
 #: steps in fs; the last one shows whether bodies are lost
-STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0)
+STEPS = (2.0, 2.5, 3.0, 4.0, 5.0)
 #: steps at which drifts are predicted, and steps at which temperatures are compared
-FORESEEN, TEMPERED = (2.0, 2.5, 3.0, 4.0), (2.0, 2.5, 3.0)
+FORESEEN, TEMPERED = (2.0, 3.0, 4.0), (2.0, 2.5, 3.0)
 #: time between samples in fs, a multiple of all steps; and the same for the short step of the floor
 INTERVAL, FLOOR_INTERVAL = 60.0, 10.0
 
@@ -204,7 +204,7 @@ class Plan:
     """Sizes of the runs: numbers of starts, durations in ps, steps of equilibration.
 
     * ``starts``, ``duration``: for an Extent with ``many``
-    * ``few``, ``short``: for the others, and for the shortest step, which takes longest
+    * ``few``, ``short``: for the others
     * ``temperatures``: duration in MAIN, with ``many``, at the steps at which temperatures are compared
     * ``floor``: duration for the limits from the forces
     * ``spectrum``: duration for the spectrum of a liquid
@@ -221,7 +221,7 @@ class Plan:
 
     def extent(self, scene, method, dt):
         """Number of starts, and duration in fs."""
-        if not scene.methods[method].many or dt == STEPS[0]:
+        if not scene.methods[method].many:
             return self.few, 1000 * self.short
         long = scene.key == MAIN.key and dt in TEMPERED
         return self.starts, 1000 * (self.temperatures if long else self.duration)

@@ -1,4 +1,4 @@
-"""Water at constant pressure: averages, fluctuations and motion, and their dependence on the time step.
+"""Water: averages, fluctuations and motion, and their dependence on the time step.
 
 plan.py (sizes of the runs), runs.py (LAMMPS' runs and the stored samples), frames.py (motion of the molecules),
 quantities.py (quantities from samples), and here the results.
@@ -13,15 +13,16 @@ from benchmarks.engine.panels import Curve, Panel
 from benchmarks.engine.statistics import allowed
 
 from . import quantities
-from .plan import COLD, COMPRESSED, EXTRAPOLATED, FIXED, LONG, METHODS, MODELS, OURS, PUBLISHED, SHAKE, SHORT, TARGETS
-from .plan import TEMPERATURE
-from .quantities import AVERAGES, COMPRESSIBILITY, DENSITY, ENERGY, FLUCTUATIONS, PRESSURE, WARMER, cell, difference, duration
+from .plan import COLD, COMPRESSED, EXTRAPOLATED, FIXED, LONG, METHODS, MODELS, OURS, PUBLISHED, RIVAL, SHAKE, SHORT
+from .plan import TARGETS, TEMPERATURE
+from .quantities import AVERAGES, COMPRESSIBILITY, DENSITY, DRIFT, ENERGY, FLUCTUATIONS, PRESSURE, WARMER
+from .quantities import cell, difference, duration
 from .runs import measure
 
 #: standard errors that a comparison of time steps needs: K, g/mL (3e-4 of the density), kcal/mol (0.02 kJ/mol)
 NEEDED = {WARMER: 0.3, DENSITY: 3e-4, ENERGY: 0.02 / 4.184}
 #: number of values that are compared with expected ones; it determines the largest deviation allowed
-COMPARED = 9
+COMPARED = 12
 RICHARDSON = f"{METHODS[SHAKE]}, extrapolated from 1 and 2 fs"
 
 
@@ -36,17 +37,29 @@ def at_atmosphere(found, model=None):
     return sorted(chosen, key=lambda one: (list(MODELS).index(one.model), list(METHODS).index(one.method), -one.dt))
 
 
+def length(samples):
+    """Duration of the samples together in ns."""
+    return sum(sample.ps for sample in samples) / 1000
+
+
 def table(found, chosen, lengths=True):
     """A row with the ``chosen`` quantities for each series at 1 atm, and for Richardson's extrapolation."""
     rows = []
     for series in at_atmosphere(found):
         samples = found[series]
-        cells = [f"{sum(s.ps for s in samples) / 1000:.2f}"] if lengths else []
+        cells = [f"{length(samples):.2f}"] if lengths else []
         rows.append([MODELS[series.model].title, series.text, *cells, *(quantity.text(samples) for quantity in chosen)])
     both = [found[series] for series in EXTRAPOLATED]
     cells = [cell(quantities.extrapolated(*both, quantity), quantity.sign) for quantity in chosen]
     rows.append([MODELS[SHORT.model].title, RICHARDSON, *(["–"] if lengths else []), *cells])
     return Table(("model", "method and step", *(["ns"] if lengths else []), *(quantity.title for quantity in chosen)), rows)
+
+
+def volume_table(found):
+    """A row for each series at constant volume."""
+    chosen = (WARMER, PRESSURE, ENERGY, DRIFT)
+    rows = [[s.text, f"{length(found[s]):.2f}", *(quantity.text(found[s]) for quantity in chosen)] for s in (*FIXED, RIVAL)]
+    return Table(("method and step", "ns", *(quantity.title for quantity in chosen)), rows)
 
 
 def durations(found):
@@ -63,7 +76,7 @@ def square_per_ns(found, quantity):
     """Square of the standard error of a quantity after 1 ns, the mean over the series of TIP4P/2005 at 1 atm by their lengths."""
     lengths, squares = [], []
     for series in at_atmosphere(found, SHORT.model):
-        lengths.append(sum(sample.ps for sample in found[series]) / 1000)
+        lengths.append(length(found[series]))
         squares.append(quantity.of(found[series])[1] ** 2 * lengths[-1])
     return float(np.average(squares, weights=lengths))
 
@@ -141,11 +154,12 @@ def measurements(found):
     most, remark = widest(apart[1], *squeezed), f"the latter: {cell(quantities.by_two_pressures(*squeezed))}"
     words = "compressibility of SPC/E water from fluctuations minus compressibility from two pressures"
     rows.append(Measurement(words, *apart, ".3f", "1/GPa", remark, least=-most, most=most))
-    for series in at_atmosphere(found):
+    for series in (*at_atmosphere(found), *FIXED, RIVAL):
         value, error = WARMER.of(found[series])
         most = widest(error, found[series])
         bounds = {"least": -most, "most": most} if series.method == OURS else {}
-        words = f"T translation − T rotation, {MODELS[series.model].title}, {series.text}"
+        where = "" if series.usual else ", at constant volume"
+        words = f"T translation − T rotation, {MODELS[series.model].title}, {series.text}{where}"
         rows.append(Measurement(words, value, error, ".2f", "K", **bounds))
     return rows
 
@@ -169,22 +183,21 @@ def find(results):
     """Finding of Results."""
     samples, found = results.samples, of_series(results.samples)
     context = {"samples": len(samples), "ps": samples[0].ps, "runs": len({(s.series, s.start) for s in samples})}
-    context |= {"temperature": TEMPERATURE, "molecules": MODELS["tip4p"].molecules, "ns": sum(s.ps for s in samples) / 1000}
+    context |= {"temperature": TEMPERATURE, "molecules": MODELS["tip4p"].molecules, "ns": length(samples)}
     context["compressibility"] = [
         COMPRESSIBILITY.text(found[LONG["spce"]]),
         cell(quantities.by_two_pressures(*(found[series] for series in COMPRESSED))),
     ]
     context["pressures"] = [series.pressure for series in COMPRESSED]
-    context["fixed"] = [PRESSURE.text(found[series]) for series in FIXED]
     context["apart"] = cell(difference(*(PRESSURE.of(found[series]) for series in FIXED)), "+")
     context["cold"] = [DENSITY.text(found[series]) for series in COLD]
     context["cold_apart"] = cell(difference(*(DENSITY.of(found[series]) for series in COLD)), "+")
     context["cold_temperature"] = COLD[0].temperature
     context["maximum"] = for_maximum(found, results.seconds)
     tables = {"water": table(found, AVERAGES), "fluctuations": table(found, FLUCTUATIONS, lengths=False)}
-    tables |= {"durations": durations(found), "costs": cost_table(found, results.seconds)}
+    tables |= {"volume": volume_table(found), "durations": durations(found), "costs": cost_table(found, results.seconds)}
     pictures = {"water": panels(found)}
     return Finding(measurements(found), tables, pictures, context)
 
 
-STUDY = Study("water", "Water at constant pressure", 3600.0, measure, find)
+STUDY = Study("water", "Averages of water", 3600.0, measure, find)

@@ -124,6 +124,8 @@ BY_AXIS = [
 ]
 COMPRESSIBILITY = Quantity("compressibility", "1/GPa", compressibility)
 EXPANSION = Quantity("expansion", "1e-4/K", expansion)
+#: of the conserved energy, of molecules with the total momentum of zero
+DRIFT = Quantity("drift", "kT/ns/dof", mean_of("drift", 1e3 / (KT * (6 * MODELS["tip4p"].molecules - 3))), "+")
 PRESSURE = Quantity("pressure", "atm", mean_of("measured"))
 AVERAGES = [DENSITY, ENERGY, WARMER, *BY_AXIS]
 FLUCTUATIONS = [

@@ -18,7 +18,7 @@ from benchmarks.studies.liquids.runs import equilibrate, template
 from benchmarks.studies.liquids.plan import Plan as Starts
 
 from .frames import read_motion
-from .plan import BATCH, METHODS, MODELS, OURS, QUICK, TARGETS, TEMPERATURE, Plan, Series
+from .plan import BATCH, EXTRAPOLATED, LONG, MODELS, OURS, QUICK, RIVAL, TARGETS, TEMPERATURE, Plan, Series
 
 FOLDER = Path(__file__).parent
 SAMPLES = FOLDER / "samples.csv"
@@ -132,7 +132,7 @@ def _sample(thermo, series, origin, motion):
     enthalpy = thermo["PotEng"] + PRESSURE_VOLUME * series.pressure * volume
     means = [thermo["Density"], thermo["PotEng"] / molecules, volume, volume**2, enthalpy, enthalpy**2, volume * enthalpy]
     means += [thermo["Press"], moving / (3 * molecules - 3), turn]
-    numbers = [float(np.mean(values)) for values in means] + [float(np.polyfit(time, thermo["Econserve"], 1)[0])]
+    numbers = [float(np.mean(values)) for values in means] + [float(np.polyfit(time, thermo["v_conserved"], 1)[0])]
     return Sample(*astuple(series), *origin, ps, len(turn), *numbers, *astuple(motion))
 
 
@@ -145,18 +145,18 @@ def trajectories(lab):
     variables = {"liquid": liquid.key, "pair": liquid.pair, "kspace": liquid.kspace, "temperature": TEMPERATURE}
     lab.many({"lattice": Job(FOLDER / "in.lattice", variables | {"template": template(liquid), "seed": 4711}, 1, plugin=False)})
     data = lab.dump("lattice").with_suffix(".data").resolve()
-    told = {method: Series("tip4p", method, 2.0) for method in METHODS}
+    told = {series.method: series for series in (LONG["tip4p"], EXTRAPOLATED[1], RIVAL)}
     steps = {"settle": 0, "steps": TOLD_AFTER, "every": TOLD_AFTER, "frame": TOLD_AFTER, "seed": 0}
     jobs = {method: Job(FOLDER / "in.water", _of_series(series, data) | steps, TOLD_AFTER) for method, series in told.items()}
     found = lab.many({f"told_{method}": job for method, job in jobs.items()})
-    return {method: f"{found[f'told_{method}'].thermo['PotEng'][-1]:.6f}" for method in METHODS}
+    return {method: f"{found[f'told_{method}'].thermo['PotEng'][-1]:.6f}" for method in told}
 
 
 def timed(lab, data, plan):
     """Method -> seconds per step on one rank, a list with one entry for each round; the methods run in turn."""
     steps, rounds = plan.timed
     sizes = {"settle": 0, "steps": steps, "every": steps, "frame": steps, "seed": 0}
-    jobs = {method: Job(FOLDER / "in.water", _of_series(Series("tip4p", method, 2.0), data) | sizes, steps) for method in METHODS}
+    jobs = {one.method: Job(FOLDER / "in.water", _of_series(one, data) | sizes, steps) for one in (LONG["tip4p"], EXTRAPOLATED[1])}
     return {method: [run.log.seconds / steps for run in runs] for method, runs in lab.in_turn(jobs, rounds).items()}
 
 
