@@ -175,7 +175,7 @@ def panels(found):
             steps = np.array([series.dt for series in of_method])
             label = METHODS[method].replace("`", "")
             curves.append(Curve(label, steps, values, color, "-", "o", errors))
-        shown.append(Panel(quantity.name, "step, fs", quantity.title, curves, log="", legend=quantity is WARMER))
+        shown.append(Panel(quantity.name, "step, fs", quantity.title, curves, log="", legend=False))
     return shown
 
 
