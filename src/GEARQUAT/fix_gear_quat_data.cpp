@@ -38,7 +38,7 @@ void FixGearQuat::copy_arrays(int i, int j, int delflag)
   ownership->copy_arrays(i, j, delflag);
 }
 
-/// A new atom belongs to no body unless set_molecule() follows.
+/// A new atom is outside all bodies until set_molecule() assigns it to one.
 void FixGearQuat::set_arrays(int i)
 {
   ownership->set_arrays(i);

@@ -158,9 +158,9 @@ void Motion::warn_of_values(const ChoiceOfValues &scene)
                    present, suits.scheme.values());
 }
 
-/// Rank 0 warns once.  A single pass is unstable with 7, 9 and 11 tuned values in water at 1 fs and
-/// of free tops, with and without projection, and with 5 values in droplets.  It is stable with even
-/// numbers.  Collective.
+/// Rank 0 warns once.  A single pass is unstable with 7, 9 and 11 tuned values in water at 1 fs, with
+/// and without projection, and with 5 and 7 values for free tops.  It is stable with even numbers.
+/// Collective.
 void Motion::warn_of_single_pass()
 {
   const Scheme &scheme = step.scheme();
