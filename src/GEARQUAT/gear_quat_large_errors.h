@@ -40,7 +40,7 @@ class LargeErrors {
     bool show_collisions() const { return large > LEAST * all && large <= MOST * all; }
   };
 
-  /// Histories begin; their first steps, which settle the rows, are not counted.
+  /// Histories begin; the first steps, in which they settle, are not counted.
   void begin(int values)
   {
     settling = 2 * values;
@@ -48,7 +48,7 @@ class LargeErrors {
   }
   /// Forgets the counts.
   void begin_run() { counts = Counts(); }
-  /// Bodies with new histories are among the others.
+  /// Some bodies have new histories; the steps in which they settle are not counted.
   void settle(int values) { settling = 2 * values; }
 
   /// Before the corrections of a step of length h.
