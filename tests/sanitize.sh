@@ -86,7 +86,7 @@ part_sanitize() {
   # not what the plugin's LAMMPS alone can do or refuse, nor what counts instructions, reads sources, compares logs or runs LAMMPS' own fixes
   GEARQUAT_TREE=tree-sanitize GEARQUAT_FUZZ_INPUTS="${GEARQUAT_FUZZ_INPUTS:-5000}" run_pytest sanitize tests/lammps \
     --ignore tests/lammps/test_plugin.py --ignore tests/lammps/test_effects.py \
-    --ignore tests/lammps/test_upstream.py --ignore tests/lammps/test_rigid_npt.py --ignore tests/lammps/test_example_logs.py \
+    --ignore tests/lammps/test_upstream.py --ignore tests/lammps/test_upstream_reports.py --ignore tests/lammps/test_example_logs.py \
     --deselect tests/lammps/test_forces_as_verlet.py::test_what_an_atom_style_clears_besides_forces \
     --deselect tests/lammps/test_forces_as_verlet.py::test_a_run_style_with_forces_elsewhere_is_not_followed \
     --deselect tests/lammps/test_extended.py::test_the_wheel_refuses_by_name \

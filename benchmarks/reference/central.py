@@ -45,7 +45,7 @@ class LennardJones:
 
 
 class Gromacs(LennardJones):
-    """Lennard-Jones whose force goes to zero between two distances, as of LAMMPS' pair style lj/gromacs.
+    """Lennard-Jones whose force goes to zero between two distances, as in LAMMPS' pair style lj/gromacs.
 
     Force plus A (r - inner)^2 + B (r - inner)^3 for each power: it and its derivative vanish at the outer distance.
     """

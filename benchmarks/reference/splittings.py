@@ -37,7 +37,7 @@ def symmetric(*half, even):
 
 @dataclass(frozen=True)
 class Splitting:
-    """Parts of a step: ``kicks`` and ``drifts``, whose numbers differ by one; the more come first."""
+    """Parts of a step: ``kicks`` and ``drifts`` in turn. There is one more of the kind that comes first."""
 
     label: str
     order: int

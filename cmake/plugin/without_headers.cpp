@@ -69,4 +69,5 @@ const bool Extended::READS_ATOM_STYLES = false;
 
 void Extended::find_atom_styles() {}
 void Extended::read_bonus(int, double, Own &) const {}
-void Extended::write_bonus(int, int, const double *) const {}
+void Extended::find_corners(Site &) const {}
+void Extended::write_bonus(const Site &, int, const double *) const {}

@@ -187,9 +187,9 @@ void FixGearQuat::deform(int flag)
 void FixGearQuat::setup_pre_exchange()
 {
   if (ownership->follow_box())
-    motion->forget("Fix gear/quat: the box was remapped since the last run, histories start anew");
+    motion->forget("Fix gear/quat: the box was remapped since the last run; histories are rebuilt");
   if (step->coupling && !step->coupling->knows_box())
-    motion->forget("Fix gear/quat: the box was changed since the last run, histories start anew");
+    motion->forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
   if (reported) driven_box->pass_faces_before_run();    // there was a run
 }
 
@@ -206,7 +206,7 @@ void FixGearQuat::setup_pre_neighbor()
   if (takes_over && !sites->match_bodies()) {
     ownership->recreate();
     update_bodies();
-    motion->forget("Fix gear/quat: atoms were changed since the last run, bodies start anew from "
+    motion->forget("Fix gear/quat: atoms were changed since the last run; bodies are rebuilt from "
                    "them");
   }
   ownership->note_box();
@@ -341,7 +341,7 @@ void FixGearQuat::tally_virial(int vflag, double **f)
 
 void FixGearQuat::min_setup(int vflag)
 {
-  motion->forget("Fix gear/quat: minimize moves the bodies, histories start anew");
+  motion->forget("Fix gear/quat: minimize moves the bodies; histories are rebuilt");
   ownership->spread_states();
   minimization->measure();
   min_post_force(vflag);

@@ -463,7 +463,7 @@ std::vector<tagint> Arguments::custom_ids(int groupbit) const
         unusable = atom->tag[i];
     }
     if ((unusable = over_ranks(MPI_MAX, unusable, world)))
-      error->all(FLERR, "Fix gear/quat custom {}: the value of atom {} is no number below {:g}",
+      error->all(FLERR, "Fix gear/quat custom {}: the value of atom {} is not a number below {:g}",
                  custom, unusable, MOST_CUSTOM);
   } else
     error->all(FLERR, "Fix gear/quat custom: {} is neither i_name nor v_name", custom);

@@ -142,6 +142,7 @@ class Barostat : public Thermostat {
 
   BoxFrequency frequency;
   bool warned_box = false, warned_mesh = false;
+  double longest_body = 0.0;    ///< largest distance of a site from the owner atom of its body
   static constexpr double IN_A_STEP = 0.03;    ///< limit for the change of the box in a step
   Upper strongest;                             ///< drive in this run, as magnitudes
   Upper drive_of_smaller;                      ///< in the start, before the box is enlarged
@@ -174,6 +175,8 @@ class Barostat : public Thermostat {
   void warn_of_box(const std::string &when, double h);
   void watch_mesh();
   void refuse_box() const;
+  void find_longest_body();
+  void refuse_narrow_box(int direction, double edge) const;
   void note_drive(const Upper &now);
   double period_for_drive(double omega) const;
   double period_for_box(double h) const;

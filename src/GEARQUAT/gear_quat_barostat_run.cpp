@@ -125,6 +125,8 @@ void Barostat::begin_run(bool begins, double h)
   if (begins) refer_to_box(h);
   correction = Upper();    // forces are evaluated in the corrected box
   std::copy_n(domain->prd, 3, begun_box.m.begin());
+  find_longest_body();
+  for (int k = 0; k < domain->dimension; ++k) refuse_narrow_box(k, domain->prd[k]);
   begun_matrix = matrix;
   frequency.begin_run();
   strongest = Upper();
@@ -375,6 +377,26 @@ Cause Barostat::instability(double h) const
           fmt::format("Use a Pdamp of {:.2g} or longer", frequency.needed_period(h))};
 }
 
+/// Collective.
+void Barostat::find_longest_body()
+{
+  double here = 0.0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    here = std::max(here, bodies.body_at(ibody).extent);
+  longest_body = over_ranks(MPI_MAX, here, world);
+}
+
+/// In such a box a body overlaps with its own images, and atoms are lost.
+void Barostat::refuse_narrow_box(int direction, double edge) const
+{
+  if (edge > longest_body) return;
+  error->all(
+      FLERR,
+      "Fix gear/quat: in step {} the edge of the box along {}, {:.4g}, would be shorter than "
+      "a body, whose atoms are {:.4g} apart; use a smaller target pressure or more bodies",
+      update->ntimestep, "xyz"[direction], edge, longest_body);
+}
+
 /// The box is predicted, but LAMMPS still has the old box.
 void Barostat::refuse_box() const
 {
@@ -389,6 +411,7 @@ void Barostat::refuse_box() const
           "longer, unless a fluid tears under a target that is negative or too small",
           update->ntimestep, "xyz"[k], domain -> prd[k], ratio,
           std::max(period_for_drive(0.0), rounded_up(1.05 * period())));
+    refuse_narrow_box(k, domain->prd[k] * ratio);
   }
   double deviates = 0.0;
   const double mean = mean_target(target);
@@ -407,7 +430,7 @@ void Barostat::refuse_box() const
   error->all(FLERR,
              "Fix gear/quat: in step {} the box has edges of {:.4g}, {:.4g} and {:.4g}, and {} "
              "in this run, because the targets of the pressure are unequal or have shear "
-             "components, which a liquid does not bear; use iso, or aniso with equal targets, "
+             "components, which a liquid cannot sustain; use iso, or aniso with equal targets, "
              "unless the system is solid",
              update->ntimestep, domain->prd[0], domain->prd[1], domain->prd[2],
              sheared < OF_HEIGHT

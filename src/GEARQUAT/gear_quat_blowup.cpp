@@ -291,12 +291,12 @@ Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
     return {fmt::format("The motion of the bodies became unstable first: {} other bodies on this "
                         "rank also have errors above {:g} % of their motion in the last step",
                         others, 100.0 * INACCURATE),
-            shorter_step(h)};
+            remedy_for_motion(ibody, h)};
   if (is_pushed(ibody, h))
     return {"The forces became unstable first: they alone move this body by more than its size, or "
             "turn it by more than a radian, in one step",
             apart + shorter_step(h)};
-  return {"The motion of this body became unstable first", shorter_step(h)};
+  return {"The motion of this body became unstable first", remedy_for_motion(ibody, h)};
 }
 
 /// The number of other bodies whose error is a large part of their motion in the last step.
@@ -323,6 +323,16 @@ bool Blowup::is_pushed(int ibody, double h) const
   const double turn = std::fabs(h) * length(after.omega_body);
   return !(way <= body.reach() + std::fabs(h) * length(bodies.state_of(ibody).velocity)) ||
       !(turn <= 1.0);
+}
+
+/// The keyword that makes rotations unstable, otherwise a step.
+std::string Blowup::remedy_for_motion(int ibody, double h) const
+{
+  if (bodies.rigid_of(ibody).rotational_freedoms() == 0 || !is_unstable_with_single_pass(scheme))
+    return shorter_step(h);
+  return fmt::format("Leave out keyword passes, or use passes 2: with passes 1 and {} tuned values "
+                     "rotations can become unstable",
+                     scheme.values());
 }
 
 std::string Blowup::shorter_step(double h) const
@@ -360,10 +370,10 @@ std::string Blowup::where(int ibody, int bad, const Meeting &met) const
 {
   if (met.other < 0)
     return bad < 0 ? std::string()
-                   : fmt::format("; the force on its atom {} is no number", atom->tag[bad]);
+                   : fmt::format("; the force on its atom {} is not a number", atom->tag[bad]);
   return fmt::format("; its atom {} is {:g} away from atom {}{}", atom->tag[met.site],
                      std::sqrt(met.distance2), atom->tag[met.other],
-                     bad < 0 ? "" : ", and the force on it is no number");
+                     bad < 0 ? "" : ", and the force on it is not a number");
 }
 
 /// The site on this rank, or the one given, that is nearest to an atom of no or another body.

@@ -6,6 +6,7 @@
 #include "gear_quat_extended.h"
 
 #include "gear_quat_ranks.h"
+#include "gear_quat_shapes.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -179,7 +180,9 @@ int Extended::freedoms(int i) const
 
 void Extended::list(int i, int body)
 {
-  if (records[i].shape != POINT || records[i].dipole) sites.push_back({i, body});
+  if (records[i].shape == POINT && !records[i].dipole) return;
+  sites.push_back({i, body, {0.0, 0.0, 0.0, 1.0}});
+  if (records[i].shape == TRIANGLE) find_corners(sites.back());
 }
 
 Extended::Pose Extended::pose(const Record &record, int i, const BodyState &state) const
@@ -209,7 +212,7 @@ void Extended::place(const std::vector<BodyState> &states, bool orientations, bo
     const Pose made = pose(record, i, states[site.body]);
     const bool by_momentum = record.shape == ELLIPSOID || record.shape == TRIANGLE;
     if (orientations) {
-      if (record.shape != POINT && record.shape != SPHERE) write_bonus(i, record.shape, made.q);
+      if (record.shape != POINT && record.shape != SPHERE) write_bonus(site, record.shape, made.q);
       if (record.dipole) std::copy_n(made.mu, 3, atom->mu[i]);
     }
     if (rates && by_momentum && atom->angmom) std::copy_n(made.momentum, 3, atom->angmom[i]);

@@ -58,6 +58,7 @@ class Extended : protected Pointers {
 
   struct Site {
     int atom, body;
+    double corners[4];    ///< of a triangle: quaternion of LAMMPS' frame of the corners in its own
   };
   std::vector<Site>
       sites;    ///< owned atoms that are more than points; stays until the next exchange
@@ -87,7 +88,7 @@ class Extended : protected Pointers {
   struct Record {    ///< an atom relative to its body
     int shape;
     int dipole;            ///< 1 if it has one
-    double moments[3];     ///< of the atom itself, in its own frame
+    double moments[3];     ///< of the atom itself, along its principal axes, its own frame
     double relative[4];    ///< quaternion of this frame in the body frame
     double mu_body[3];
   };
@@ -118,7 +119,8 @@ class Extended : protected Pointers {
   void rate(int atom, const Own &mine, double *momentum_space) const;
   Pose pose(const Record &record, int atom, const BodyState &state) const;
   void read_bonus(int atom, double mass, Own &mine) const;
-  void write_bonus(int atom, int shape, const double *q) const;
+  void find_corners(Site &site) const;
+  void write_bonus(const Site &site, int shape, const double *q) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -3,9 +3,13 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-// orientations in LAMMPS' atom styles; its quaternions have the scalar first
+// orientations in LAMMPS' atom styles; its quaternions have the scalar first.
+// LAMMPS keeps the corners of a triangle in a frame that is principal only if its data file has the
+// triangle at the origin: the own frame follows from the corners, which do not change.
 
 #include "gear_quat_extended.h"
+
+#include "gear_quat_shapes.h"
 
 #include "atom.h"
 #include "atom_vec_ellipsoid.h"
@@ -47,17 +51,32 @@ void Extended::read_bonus(int i, double mass, Own &mine) const
     quaternion_about_z(bonus.theta, mine.q);
   } else if (mine.shape == TRIANGLE) {
     const auto &bonus = triangles->bonus[atom->tri[i]];
-    triangle_moments(mass, bonus.c1, bonus.c2, bonus.c3, mine.moments);
-    from_lammps(bonus.quat, mine.q);
+    double of_corners[4], principal[4];
+    triangle_moments(mass, bonus.c1, bonus.c2, bonus.c3, mine.moments, principal);
+    from_lammps(bonus.quat, of_corners);
+    w_times(of_corners, principal, mine.q);
   }
 }
 
-void Extended::write_bonus(int i, int shape, const double *q) const
+void Extended::find_corners(Site &site) const
 {
-  if (shape == ELLIPSOID)
+  const auto &bonus = triangles->bonus[atom->tri[site.atom]];
+  double moments[3], principal[4];
+  triangle_moments(1.0, bonus.c1, bonus.c2, bonus.c3, moments, principal);
+  for (int k = 0; k < 3; ++k) site.corners[k] = -principal[k];
+  site.corners[3] = principal[3];
+}
+
+void Extended::write_bonus(const Site &site, int shape, const double *q) const
+{
+  const int i = site.atom;
+  if (shape == ELLIPSOID) {
     to_lammps(q, ellipsoids->bonus[atom->ellipsoid[i]].quat);
-  else if (shape == LINE)
+  } else if (shape == LINE) {
     lines->bonus[atom->line[i]].theta = angle_about_z(q);
-  else if (shape == TRIANGLE)
-    to_lammps(q, triangles->bonus[atom->tri[i]].quat);
+  } else if (shape == TRIANGLE) {
+    double of_corners[4];
+    w_times(q, site.corners, of_corners);
+    to_lammps(of_corners, triangles->bonus[atom->tri[i]].quat);
+  }
 }

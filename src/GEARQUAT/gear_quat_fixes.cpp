@@ -107,7 +107,7 @@ void OtherFixes::tell_noise(const std::string &forces, Noise noise)
   if (remedy.empty()) return;
   warned_noise = true;
   if (comm->me == 0)
-    error->warning(FLERR, "Fix gear/quat: forces of {}, and {} values make heat of them; use {}",
+    error->warning(FLERR, "Fix gear/quat: forces of {}, and {} values turn them into heat; use {}",
                    forces, args.scheme.values(), remedy);
 }
 

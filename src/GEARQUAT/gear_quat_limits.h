@@ -53,6 +53,14 @@ inline BodyState kicked(const RigidBody &body, const BodyState &before, const Lo
   return s;
 }
 
+/// True if rotations can become unstable because the passes are limited to one.  In water at 1 fs
+/// this happens with 7, 9 and 11 tuned values, with and without projection, and with 5 and 7 values
+/// for free tops.  Even numbers are stable.
+inline bool is_unstable_with_single_pass(const Scheme &scheme)
+{
+  return scheme.passes == 1 && scheme.tuned && !scheme.first() && scheme.values() % 2 == 1;
+}
+
 constexpr int FLIGHT_STEPS = 100, LONG_FLIGHT_STEPS = 5000;
 
 /// Radians in a step; a slower rotation is stable with all methods.

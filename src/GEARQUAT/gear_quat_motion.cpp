@@ -98,6 +98,7 @@ void Motion::begin_run()
     step.coupling->begin_run(!step.started, step.tolerance ? std::min(h, longest_step()) : h);
   if (step.tolerance) step.tolerance->announce_output();
   vibrations.begin_run();
+  step.large_errors.begin_run();
   set_up = true;
 }
 
@@ -285,7 +286,7 @@ bool Motion::has_to_start(double **f)
   measure_friction(f);
   const char *reason = step.started ? reason_to_start_anew(f) : nullptr;
   if (reason && comm->me == 0)
-    utils::logmesg(lmp, "Fix gear/quat {}: {}, histories start anew\n", fix->id, reason);
+    utils::logmesg(lmp, "Fix gear/quat {}: {}; histories are rebuilt\n", fix->id, reason);
   const bool needs = !step.started || reason;
   movers = present_movers();
   if (step.coupling) step.coupling->begin_steps(needs);
@@ -327,6 +328,7 @@ void Motion::begin(bool full)
   // after the checks of the start, since an error of a coupling may have the same cause
   if (chosen) warn_of_vibrations(*chosen, step.scheme(), true);
   chosen.reset();
+  step.large_errors.begin(step.scheme().values());
   if (!step.tolerance) return;
   step.tolerance->begin(full);
   step.make_integrator();
@@ -411,7 +413,7 @@ std::string Motion::read(const Sections &file)
     error->warning(
         FLERR,
         "Fix gear/quat: the restart file was written with other settings of {}; poses and "
-        "velocities are kept, the higher derivatives start anew",
+        "velocities are kept, the higher derivatives are rebuilt",
         utils::join_words(others, ", "));
   return utils::join_words(missing, " and ");
 }

@@ -57,7 +57,8 @@ class Motion : protected Pointers {
   /// Collective.
   void look_at_contacts(double **f);
   /// After a step: warns if vibrations or rotations have become too fast for the step since
-  /// histories began.  Collective in the last step of a run and a few others.
+  /// histories began, or if collisions are too short.  Collective in the last step of a run and a
+  /// few others.
   void look_at_vibrations();
   /// The largest error of a body on this rank in the last step, as a length.
   double last_error() const;
@@ -105,7 +106,7 @@ class Motion : protected Pointers {
   double advised_step = HUGE_VAL;          ///< by the last warning about vibrations
   std::optional<ChoiceOfValues> chosen;    ///< input to the choice of a start that has not ended
   bool warned_pass = false;
-  bool warned_values = false;
+  bool warned_values = false, warned_errors = false;
   double damping = 0.0;    ///< part of a momentum that is damped by forces in a step
   void measure_friction(double **f);
   bool warned_friction = false, watches = false;
@@ -116,6 +117,7 @@ class Motion : protected Pointers {
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
   void warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins);
   void warn_of_values(const ChoiceOfValues &scene);
+  void warn_of_errors(const ChoiceOfValues &scene);
   void warn_of_single_pass();
   const char *another_scheme_suits();
   std::string words_of_scheme() const;

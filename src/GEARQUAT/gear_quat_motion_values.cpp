@@ -133,11 +133,32 @@ void Motion::look_at_vibrations()
   if (!vibrations.note_step(step.length())) return;
   ChoiceOfValues scene = scene_of(vibrations.sums());
   scene.edge = MotionSums::true_edge(scene.edge);
-  if (!scene.exact) return;
-  if (scene.too_long(step.scheme()))
+  if (scene.exact && scene.too_long(step.scheme())) {
     warn_of_vibrations(scene, step.scheme(), false);
-  else if (args.automatic_values)
-    warn_of_values(scene);
+    return;
+  }
+  if (scene.exact && args.automatic_values) warn_of_values(scene);
+  warn_of_errors(scene);
+}
+
+/// Warns once of collisions that no window has shown.  Errors of random forces, of contacts, and
+/// with Gear's coefficients are large in any case.  Collective.
+void Motion::warn_of_errors(const ChoiceOfValues &scene)
+{
+  if (warned_errors || scene.noise != Noise::NONE || !step.scheme().tuned) return;
+  const LargeErrors::Counts &mine = step.large_errors.counted();
+  double here[2] = {mine.large, mine.all};
+  const auto sums = over_ranks(MPI_SUM, here, world);
+  const LargeErrors::Counts all = {sums[0], sums[1]};
+  if (!all.show_collisions()) return;
+  warned_errors = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat {}: by step {} collisions have been too short for the time step: "
+                   "in {:.2g} % of all steps of bodies the error exceeds {:g} % of the motion; use "
+                   "a time step of {:g} or shorter, or keyword tolerance",
+                   fix->id, update->ntimestep, 100.0 * all.large / all.all,
+                   100.0 * LargeErrors::LARGE, rounded_down(0.5 * std::fabs(step.length())));
 }
 
 /// Warns once for these histories, which keep their number of values.
@@ -158,22 +179,18 @@ void Motion::warn_of_values(const ChoiceOfValues &scene)
                    present, suits.scheme.values());
 }
 
-/// Rank 0 warns once.  A single pass is unstable with 7, 9 and 11 tuned values in water at 1 fs, with
-/// and without projection, and with 5 and 7 values for free tops.  It is stable with even numbers.
-/// Collective.
+/// Rank 0 warns once.  Collective.
 void Motion::warn_of_single_pass()
 {
   const Scheme &scheme = step.scheme();
-  const int values = scheme.values();
-  if (warned_pass || scheme.passes != 1 || !scheme.tuned || scheme.first()) return;
-  if (values % 2 == 0) return;
+  if (warned_pass || !is_unstable_with_single_pass(scheme)) return;
   if (!over_ranks(MPI_MAX, (int) !bodies.tops.empty(), world)) return;
   warned_pass = true;
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat {}: with passes 1 and {} tuned values rotations can become "
                    "unstable; leave out keyword passes, or use passes 2",
-                   fix->id, values);
+                   fix->id, scheme.values());
 }
 
 /// Measures the damping of momenta by forces in a step.  f: the forces of all fixes.  Collective.

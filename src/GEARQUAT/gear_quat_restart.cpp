@@ -142,12 +142,12 @@ bool Restart::resume(int group)
   const std::string missing = motion.read(sections);
   if (!missing.empty())
     motion.forget(fmt::format("Fix gear/quat {}: the restart file{} does not have {}; histories "
-                              "start anew",
+                              "are rebuilt",
                               fix->id, release.empty() ? "" : ", of release " + release + ",",
                               missing));
   if (found == Resumed::FEWER)    // the motion of the others contributes to derivatives of forces
     motion.forget(fmt::format("Fix gear/quat {}: some bodies of the restart file are in no body of "
-                              "this command, histories start anew",
+                              "this command; histories are rebuilt",
                               fix->id));
   return true;
 }

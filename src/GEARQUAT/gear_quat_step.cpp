@@ -125,6 +125,7 @@ void Step::predict(double **f)
   const double h = integrator->step();
   time_step.begin();
   find_limits(h);
+  large_errors.begin_step(h);
   const auto check = [&](int ibody) {
     const BodyState &state = bodies.state_of(ibody);
     if (!tolerance && !blowup.limits.keep_velocities(state)) blowup.stop(ibody, state, h, f);
@@ -190,7 +191,7 @@ template <bool MASKED, bool POINT, bool CHANGING> void Step::correct_body(int ib
   else
     integrator->body_state(rigid, rows, state, bodies.change_frame(ibody));
   if (MASKED) last.work = work_between(bodies.load_of(ibody), before, state);
-  if (!CHANGING) check_limits(ibody, f);
+  if (!CHANGING) examine(ibody, f);
 }
 
 void Step::correct_together()
@@ -224,7 +225,7 @@ void Step::hold(double **f)
 {
   if (tolerance || coupling) {    // otherwise correct_body() has done this
     for (const auto *list : {&bodies.points, &bodies.tops})
-      for (const int ibody : *list) check_limits(ibody, f);
+      for (const int ibody : *list) examine(ibody, f);
   }
   if (coupling) coupling->note_step(integrator->step());
   begin_fresh(f);
@@ -239,7 +240,10 @@ void Step::begin_fresh(double **f)
     seed_body(bodies, ibody, scaled_of(bodies, coupling.get(), ibody), acting(ibody), scheme(),
               integrator->step(), known);
   }
-  if (!bodies.fresh.empty()) bodies.take_in_fresh();
+  if (!bodies.fresh.empty()) {
+    bodies.take_in_fresh();
+    large_errors.settle(scheme().values());
+  }
   if (coupling) coupling->follow_changes(integrator->step());
 }
 
@@ -256,11 +260,13 @@ void Step::find_limits(double h)
   blowup.limits = MotionLimits(h, longest);
 }
 
-/// Tests a corrected state.
-inline void Step::check_limits(int ibody, double **f) const
+/// Tests a corrected state, and notes its error.
+inline void Step::examine(int ibody, double **f)
 {
   const BodyState &state = bodies.state_of(ibody);
   if (!blowup.limits.keep(state)) blowup.stop(ibody, state, integrator->step(), f);
+  if (!tolerance && ibody < bodies.nowned())
+    large_errors.note(bodies.body_at(ibody), state, bodies.load_of(ibody), bodies.last_of(ibody));
 }
 
 void Step::check_loads(double **f)

@@ -22,6 +22,7 @@
 #include "gear_quat_blowup.h"
 #include "gear_quat_coupling.h"
 #include "gear_quat_fixes.h"
+#include "gear_quat_large_errors.h"
 #include "gear_quat_scene.h"
 #include "gear_quat_sites.h"
 #include "gear_quat_time_step.h"
@@ -92,6 +93,7 @@ class Step : protected Pointers {
 
   TimeStep time_step;
   Blowup blowup;
+  LargeErrors large_errors;                ///< without keyword tolerance
   std::unique_ptr<Tolerance> tolerance;    ///< null: the step is LAMMPS' own
   std::unique_ptr<Coupling> coupling;      ///< null: bodies move by their own loads
 
@@ -121,7 +123,7 @@ class Step : protected Pointers {
   void shorten();
   void hold(double **f);
   void begin_fresh(double **f);
-  void check_limits(int ibody, double **f) const;
+  void examine(int ibody, double **f);
   void find_limits(double h);
   bool is_due(const std::vector<int> &periods) const;
 };

@@ -44,8 +44,8 @@ void Tolerance::refuse_scene() const
 {
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR,
-               "Fix gear/quat tolerance cannot be used with run_style respa: its levels have "
-               "steps of their own");
+               "Fix gear/quat tolerance cannot be used with run_style respa, whose levels "
+               "have different steps");
   for (auto *other : modify->get_fix_list()) {
     if (other == fix) continue;
     const Fleet::Member *same = fleet.find(other);

@@ -161,7 +161,7 @@ bool Tolerance::accepts()
                    bodies.fresh.empty() ? 0.0 : 1.0,
                    largest_speed()};
   const auto all = over_ranks(MPI_MAX, here, world);
-  errors = {{all[0], all[1], all[2]}, {all[3], all[4], all[5]}};
+  errors = {{all[0], all[1], all[2]}, {all[3], all[4], all[5]}, {}};
   fresh = all[6] != 0.0;
   speed = all[7];
   if (repeat.possible() && control.fails(step_error(), update->dt) && tries < MOST_TRIES) {
@@ -182,7 +182,7 @@ void Tolerance::refuse_lost() const
   if (tries == MOST_TRIES)
     error->all(
         FLERR,
-        "Fix gear/quat tolerance: step {} was made {} times, and its error is {:.2g} still at a "
+        "Fix gear/quat tolerance: step {} was tried {} times, and its error is {:.2g} still at a "
         "time step of {:.3g}; the forces are not continuous, or the tolerance is smaller "
         "than their rounding",
         update->ntimestep, tries + 1, shown(step_error()), update->dt);
@@ -201,7 +201,7 @@ void Tolerance::refuse_frozen() const
       error->all(
           FLERR,
           "Fix gear/quat {}: in step {} an interval of {:.3g} is below the last digit of the "
-          "time {:.9g}, which would stand still; {}",
+          "time {:.9g}, which would not advance; {}",
           keyword, update->ntimestep, interval, begun, remedy);
   };
   refuse("dtmax", control.longest, "use a larger dtmax");

@@ -175,7 +175,7 @@ def springs(lmp, dt, commands, words=""):
 def test_a_run_in_another_range_begins_with_another_number(lmp_tree):
     result = springs(lmp_tree, 0.15, "run 9\ntimestep 0.26\nrun 9\ntimestep 0.13\nrun 9")
     assert numbers(result) == [9, 5, 9]
-    assert result.stdout.count("the motion suits another number of values, histories start anew") == 2
+    assert result.stdout.count("the motion suits another number of values; histories are rebuilt") == 2
 
 
 def test_close_to_the_limit_it_stays(lmp_tree):
@@ -210,7 +210,7 @@ def continued(lmp, data, words, later="", dt=LONG, before=""):
 @pytest.mark.parametrize("words", ["", "values 7", "values 9 project yes passes 2", "corrector gear"])
 def test_a_restart_goes_on_with_the_method_of_the_file(lmp_tree, data, words):
     whole, half, result = continued(lmp_tree, data, words)
-    assert chosen(result) == [] and "start anew" not in result.stdout
+    assert chosen(result) == [] and "are rebuilt" not in result.stdout
     assert np.array_equal(whole, half)
 
 
@@ -218,11 +218,11 @@ def test_a_restart_keeps_its_number_outside_of_its_range(lmp_tree, data):
     lmp_tree.succeed(water(data, dt=1.5, steps=20, run="run 20\nwrite_restart half"))
     deck = restarted(water(data, dt=2.8, steps=5), "half")
     result = lmp_tree.succeed(deck)
-    assert chosen(result) == [] and "start anew" not in result.stdout
+    assert chosen(result) == [] and "are rebuilt" not in result.stdout
 
 
 def test_what_the_script_states_counts(lmp_tree, data):
     whole, half, result = continued(lmp_tree, data, "", later="project yes")
-    assert "start anew" not in result.stdout and not np.array_equal(whole, half)
+    assert "are rebuilt" not in result.stdout and not np.array_equal(whole, half)
     result = continued(lmp_tree, data, "", later="values 9")[2]
     assert "other settings of values" in result.stdout

@@ -30,7 +30,7 @@ ARGUMENTS = {
     "custom i_real": "requires an integer vector of that name",
     "custom v_nosuch": "requires an atom-style or atomfile-style variable",
     "custom v_equal": "requires an atom-style or atomfile-style variable",
-    "custom v_huge": "custom v_huge: the value of atom 6 is no number below 2.14748e+09",
+    "custom v_huge": "custom v_huge: the value of atom 6 is not a number below 2.14748e+09",
     "custom i_far": "custom i_far: values from -2147483647 to 2147483647 are too far apart",
     "molecule sloppy yes": "keyword: sloppy; the keywords are formulation, values, corrector,",
     "molecule formulation third": "formulation: unknown value third (second or first)",

@@ -113,7 +113,7 @@ run 9
     result = lmp_tree.refuse(two_molecules(after=after), message)
     assert len(result.errors) == 1
     # there are no other atoms
-    assert "; the force on its atom 2 is no number. The forces became unstable first" in result.words
+    assert "; the force on its atom 2 is not a number. The forces became unstable first" in result.words
 
 
 @pytest.mark.parametrize("values, dt, ranks", [(8, 40, 1), (8, 40, 2), (12, 6, 1), (12, 10, 4)])

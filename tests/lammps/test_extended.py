@@ -344,13 +344,13 @@ def test_restart_is_exact(lmp, kind, ranks, formulation):
 )
 def test_changes_between_runs_are_seen(lmp, command):
     text = clustered("dipoles", steps=5, run=f"run 5\n{command}\nrun 5")
-    assert ("bodies start anew" in lmp.succeed(text).log) == bool(command)
+    assert ("bodies are rebuilt" in lmp.succeed(text).log) == bool(command)
 
 
 def test_turned_ellipsoids_are_seen(lmp_tree):
     for command in ("", "set atom 1 quat 1 0 0 30"):
         text = clustered("ellipsoids", steps=5, run=f"run 5\n{command}\nrun 5")
-        assert ("bodies start anew" in lmp_tree.succeed(text).log) == bool(command)
+        assert ("bodies are rebuilt" in lmp_tree.succeed(text).log) == bool(command)
 
 
 # --- temperature, and unsupported settings ------------------------------------------------------

@@ -129,7 +129,7 @@ def test_walls_that_see_one_fix_only_are_named(lmp_wheel, second, told):
 def test_contacts_suit_few_values(lmp_wheel, style, wall, source, words, many):
     fix = f"fix move all gear/quat group 2 low high {words}"
     result = lmp_wheel.succeed(deck(fix, 1e-5, wall=wall, style=style, steps=1))
-    told = f"forces of {source} set in at once where particles touch, and 9 values make heat of them; use values 4"
+    told = f"forces of {source} set in at once where particles touch, and 9 values turn them into heat; use values 4"
     assert (told in result.words) == (many and source is not None)
     chosen = "4 values and corrector gear, because forces of collisions or contacts set in at once"
     assert (chosen in result.words) == (words == "" and source is not None)

@@ -277,7 +277,7 @@ def test_momentum_and_energy_of_a_solution(solution, fix):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_two_fixes_are_one(box, fix, ranks):
-    """The same motion, temperature and pressure; sums over bodies consist of two parts."""
+    """Motion, temperature and pressure are the same; a sum over all bodies is the sum of both fixes."""
     fix = f"{fix} start zero"
     sums, both = "f_move[1] f_move[2]", "f_move[1] f_move[2] f_rest[1] f_rest[2]"
     two = f"fix rest others {fix}\nfix_modify rest energy yes\n"

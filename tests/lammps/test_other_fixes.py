@@ -278,7 +278,7 @@ def test_log_and_warning_agree_on_random_forces(lmp_wheel, words, most):
     line = r"random forces heat bodies with many values; use (.*?) instead of (\d)"
     remedy, values = re.search(line, told).groups()
     assert values == ("8" if most else "9")
-    assert f"{values} values make heat of them; use {remedy}" in told
+    assert f"{values} values turn them into heat; use {remedy}" in told
     if most:
         assert remedy == f"values {most} at most"
     page = re.search(line, (ROOT / "doc/howto/read_log.md").read_text())[1]
@@ -371,5 +371,5 @@ def test_few_values_suit_srd(lmp_wheel):
     *few, many, rigid = (np.mean(table["Temp"][50:]) for table in result.thermo)
     assert few == pytest.approx([rigid] * 4, rel=0.25)  # as chosen by the fix, too
     assert many > 2 * rigid  # the log warns of this
-    told = "forces of fix heat (srd) are random, and 8 values make heat of them; use values 4"
+    told = "forces of fix heat (srd) are random, and 8 values turn them into heat; use values 4"
     assert result.words.count("are random, and") == 1 and told in result.words

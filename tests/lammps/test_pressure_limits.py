@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from pressed import pressed, trimers
+from pressed import ARMS, pressed, trimers
 from scenes import largest_change, water_data
 
 # --- the frequency of the box --------------------------------------------------------------------
@@ -198,3 +198,20 @@ def test_no_edge_along_z_in_two_dimensions(lmp_wheel, tied):
     trimers(lmp_wheel.folder / "data.flat", flat=True)
     deck = pressed(f"x 1 1 1 y 1 1 1 couple {tied}", dimension=2, data="data.flat")
     lmp_wheel.refuse(deck, "in two dimensions there is no edge along z; use couple xy")
+
+
+# --- a box as narrow as a body -----------------------------------------------------------------
+
+NARROW = re.compile(r"in step (\d+) the edge of the box along (.), (\S+), would be shorter than a body, whose atoms are (\S+) apart")
+
+
+@pytest.mark.parametrize("spacing, words", [(0.25, "iso 1 1 10"), (1.0, "iso 30000 30000 20"), (1.0, "z 30000 30000 20")])
+def test_an_edge_shorter_than_a_body(lmp_wheel, spacing, words):
+    """At the beginning of a run and in a run, before atoms are lost."""
+    trimers(lmp_wheel.folder / "data.trimers", spacing=spacing)
+    deck = pressed(words + " ptemp 1.0", 0.002, 20000, before="neigh_modify one 20000 page 200000")
+    result = lmp_wheel.refuse(deck, "use a smaller target pressure or more bodies")
+    step, axis, edge, apart = NARROW.search(result.words).groups()
+    assert (step == "0") == (spacing == 0.25) and axis in words.partition(" ")[0].replace("iso", "x")
+    longest = max(np.linalg.norm(a - b) for a in ARMS for b in ARMS)
+    assert 0.5 * longest < float(apart) <= longest + 1e-4 and float(edge) <= float(apart)

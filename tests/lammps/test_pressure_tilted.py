@@ -139,6 +139,6 @@ def test_a_liquid_that_flows_under_shear_ends_the_run(lmp_wheel):
     words = "x 1.0 1.0 0.5 y 1.0 1.0 0.5 z 1.0 1.0 0.5 xy 0.4 0.4 0.5 xz 0 0 0.5 yz 0 0 0.5 temp 2.0 2.0 0.2"
     deck = tilted(words, steps=20000, pair=REPULSIVE)
     result = lmp_wheel.refuse(deck, "it was sheared by 2 times its height in this run, because the targets")
-    assert "which a liquid does not bear; use iso" in result.errors[0]
+    assert "which a liquid cannot sustain; use iso" in result.errors[0]
     # without a shear target the box of a liquid only fluctuates
     lmp_wheel.succeed(tilted(words.replace("xy 0.4 0.4", "xy 0 0"), steps=2000, pair=REPULSIVE))

@@ -16,8 +16,8 @@ from scenes import (
 
 REMAPPED = "WARNING: Fix gear/quat: atoms of {} bodies were remapped with the box"
 DEFORMED = "has another shape than in the last run, and a remap"
-ANEW = "the box was remapped since the last run, histories start anew"
-FROM_ATOMS = "atoms were changed since the last run, bodies start anew from them"
+ANEW = "the box was remapped since the last run; histories are rebuilt"
+FROM_ATOMS = "atoms were changed since the last run; bodies are rebuilt from them"
 LENGTH = 9.9  # of the box of 27 molecules
 
 CHANGES = {

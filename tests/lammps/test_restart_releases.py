@@ -15,7 +15,7 @@ from make_restarts import CASES, FOLDER, go_on
 
 RELEASES = sorted(path.name for path in FOLDER.iterdir())
 ROUNDING = 1e-12
-ANEW = "histories start anew"
+ANEW = "histories are rebuilt"
 SUMS = (
     "does not have the kinetic energies of past steps that temp needs "
     "(its friction and energy are kept)"

@@ -76,4 +76,4 @@ def test_what_came_for_good_is_noticed_behind_it(lmp_tree):
     runs = [f"run 40\nfix pull all addforce 0 0 1\n{look}run 60" for look in ("", "run 0\n")]
     ends, result = ends_of(lmp_tree, runs, TEMP)
     assert ends[0] == ends[1]
-    assert result.log.count("other degrees of freedom, than in the last steps, histories start anew") == 2
+    assert result.log.count("other degrees of freedom, than in the last steps; histories are rebuilt") == 2

@@ -60,3 +60,11 @@ def test_free_tops(lmp_wheel, words, stable):
     (lmp_wheel.folder / "top.mol").write_text(TOP)
     result = lmp_wheel.run(TOPS.format(words=words))
     assert (told(result) == []) == (result.returncode == 0) == stable
+
+
+def test_the_error_message_names_the_keyword(lmp_wheel):
+    """Its remedy is not a shorter time step, which would not help."""
+    (lmp_wheel.folder / "top.mol").write_text(TOP)
+    result = lmp_wheel.refuse(TOPS.format(words="values 7 passes 1"), "blow-up")
+    remedy = "Leave out keyword passes, or use passes 2: with passes 1 and 7 tuned values rotations can become unstable"
+    assert result.words.partition("ERROR")[2].count(remedy) == 1 and "time step" not in result.words.partition("ERROR")[2]

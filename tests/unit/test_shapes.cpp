@@ -1,7 +1,7 @@
-/* gear_quat_math.h: own inertia of extended sites, and orientations fixed to a body. */
+/* gear_quat_shapes.h: own inertia of extended sites, and orientations fixed to a body. */
 
 #include "checks.h"
-#include "gear_quat_math.h"
+#include "gear_quat_shapes.h"
 
 using namespace LAMMPS_NS::GearQuat;
 using Check::largest_difference;
@@ -30,6 +30,45 @@ struct Points {
     Check::relatively_near_and_refuses_one_percent(made, sum, tolerance);
   }
 };
+
+/// A triangle with its center at the origin, in a frame turned by q from the frame of its corners.
+struct Triangle {
+  double c[3][3], mass = 3.0;
+
+  Triangle(const vector<double> &q, double ax, double ay, double bx, double by)
+  {
+    const double flat[3][3] = {{ax, ay, 0.0}, {bx, by, 0.0}, {-ax - bx, -ay - by, 0.0}};
+    double a[9];
+    rotation_matrix(q.data(), 1.0, a);
+    for (int n = 0; n < 3; ++n) to_space(a, flat[n], c[n]);
+  }
+
+  /// Inertia tensor, integrated with the midpoints of the edges, exact for squares of coordinates.
+  void integrate(double tensor[9]) const
+  {
+    for (int i = 0; i < 9; ++i) tensor[i] = 0.0;
+    for (int n = 0; n < 3; ++n) {
+      double p[3];
+      for (int k = 0; k < 3; ++k) p[k] = 0.5 * (c[n][k] + c[(n + 1) % 3][k]);
+      for (int i = 0; i < 9; ++i)
+        tensor[i] += mass / 3.0 * ((i % 4 == 0) * dot3(p, p) - p[i / 3] * p[i % 3]);
+    }
+  }
+
+  void own(double moments[3], double principal[4]) const
+  {
+    triangle_moments(mass, c[0], c[1], c[2], moments, principal);
+  }
+};
+
+/// The tensor in the frame of the corners.
+void own_tensor(const double moments[3], const double *principal, double tensor[9])
+{
+  double a[9];
+  rotation_matrix(principal, 1.0, a);
+  for (int i = 0; i < 9; ++i) tensor[i] = 0.0;
+  add_tensor(moments, a, tensor);
+}
 
 }    // namespace
 
@@ -75,9 +114,51 @@ TEST(Moments, TriangleIsThatOfPoints)
         for (int k = 0; k < 3; ++k) p[k] = c1[k] + u * (c2[k] - c1[k]) + v * (c3[k] - c1[k]);
         points.add(p[0], p[1], p[2]);
       }
-  double made[3];
-  triangle_moments(3.0, c1, c2, c3, made);
+  double made[3], principal[4];
+  triangle_moments(3.0, c1, c2, c3, made, principal);
   points.expect_moments(made, 3.0, 1e-3);
+  const double unturned[4] = {0.0, 0.0, 0.0, 1.0};
+  EXPECT_EQ(largest_difference(principal, unturned, 4), 0.0);
+}
+
+TEST(Moments, TriangleHasItsTensorInAnyFrame)
+{
+  Check::Numbers numbers(7);
+  for (int n = 0; n < 20; ++n) {
+    const Triangle triangle(numbers.unit_quaternion(), -1.0, -0.4, 0.9, 0.1 * n - 1.0);
+    double expected[9], moments[3], principal[4], made[9];
+    triangle.integrate(expected);
+    triangle.own(moments, principal);
+    EXPECT_NEAR(dot4(principal, principal), 1.0, 1e-14);
+    Check::holds_and_refuses_one_percent({moments, moments + 3}, [&](const vector<double> &given) {
+      own_tensor(given.data(), principal, made);
+      return largest_difference(made, expected, 9) < 1e-14;
+    });
+    const double unturned[4] = {0.0, 0.0, 0.0, 1.0};
+    own_tensor(moments, unturned, made);    // the frame of the corners is not principal
+    EXPECT_GT(largest_difference(made, expected, 9), 1e-2);
+  }
+}
+
+TEST(Moments, TriangleHasAnOwnFrameThatDependsOnCornersOnly)
+{
+  Check::Numbers numbers(8);
+  // equilateral: every direction in its plane is principal
+  Triangle triangle(numbers.unit_quaternion(), -0.5, -0.5 / std::sqrt(3.0), 0.5,
+                    -0.5 / std::sqrt(3.0));
+  double moments[3], principal[4], other_moments[3], other[4];
+  triangle.own(moments, principal);
+  triangle.mass *= 1.7;
+  triangle.own(other_moments, other);
+  EXPECT_EQ(largest_difference(principal, other, 4), 0.0);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(other_moments[k], 1.7 * moments[k], 1e-15);
+
+  // products of inertia at the level of rounding do not turn it
+  const double c1[3] = {-0.5, -0.5 / std::sqrt(3.0), 1e-16},
+               c3[3] = {0.0, 1.0 / std::sqrt(3.0), 0.0};
+  const double c2[3] = {0.5 + 1e-16, c1[1], -1e-16}, unturned[4] = {0.0, 0.0, 0.0, 1.0};
+  triangle_moments(1.0, c1, c2, c3, moments, principal);
+  EXPECT_EQ(largest_difference(principal, unturned, 4), 0.0);
 }
 
 TEST(Orientations, FollowTheBodyAndComeBack)

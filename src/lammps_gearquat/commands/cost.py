@@ -24,7 +24,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
         "errors",
         type=POSITIVE,
         multiple=True,
-        help="Error whose cost is wanted, in the deck's unit of length (orientations: radians);"
+        help="Target error, in the deck's unit of length (orientations: radians);"
         " repeatable.  Default: powers of ten of the size of the bodies.",
     ),
     cloup.option(
@@ -32,7 +32,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
         "norm",
         type=cloup.Choice(NORMS),
         default=NORMS[0],
-        help="Quantity that the error is of, over all bodies.",
+        help="Quantity whose error is measured, over all bodies.",
     ),
     cloup.option(
         "--time",

@@ -91,7 +91,7 @@ class _Pair:
         self.words = list(zip(("first", "second"), keywords, steps, strides))
 
     def run(self, segments):
-        """Trials over this number of segments.  Raises LammpsError with the cause, and the time that both reach."""
+        """Trials over this number of segments.  Raises LammpsError, which states the cause and the time reached by both."""
         trials, reached, errors = [], [segments], []
         for words in self.words:
             try:

@@ -118,7 +118,7 @@ class Worker:
             if self.ranks > 1:
                 launcher = self.launcher or (find("mpiexec"), "-n")
                 if not launcher[0]:
-                    raise DeckError("--ranks needs the program mpiexec, which is neither beside Python nor on the PATH")
+                    raise DeckError("--ranks needs the program mpiexec, which was not found beside Python or on the PATH")
                 command = [*launcher, str(self.ranks), *command]
             self.process = self._running.enter_context(started(command, None, self.environment, output))
             end = time.monotonic() + PATIENCE

@@ -1,13 +1,14 @@
-"""LAMMPS' barostat for rigid bodies has the defects reported in doc/upstream/rigid_npt. These tests fail with a LAMMPS
-without the defects, so we will notice a correction."""
+"""LAMMPS has the defects reported in doc/upstream/reports. These tests fail with a LAMMPS without the defects, so we
+will notice a correction."""
 
 from __future__ import annotations
 
 import re
 
+import numpy as np
 import pytest
 
-from rigid_npt import COMMAND, CONSTANT, DUMBBELLS, FOLDER, REPORTS, deck, results, run
+from upstream_reports import COMMAND, CONSTANT, DUMBBELLS, FOLDER, REPORTS, deck, results, run
 from benchmarks.engine.publish import split_block
 
 BOTH = pytest.mark.parametrize("style", ["rigid/npt/small", "rigid/npt"])
@@ -66,6 +67,42 @@ def test_molecular_virial_is_the_derivative_of_the_energy(lmp):
     for atomic, molecular, difference in found.values():
         assert molecular == pytest.approx(difference, rel=1e-5, abs=1e-3)
         assert abs(atomic - difference) > 0.05 * abs(difference)
+
+
+@pytest.mark.parametrize(
+    "variables, factor",
+    [
+        # the area is 3
+        ({}, 1 / 3),
+        ({"density": 2}, 1 / 3),
+        ({"from": "set"}, 1),
+        ({"from": "set", "density": 3}, 3),
+    ],
+)
+def test_moments_of_triangles_are_wrong_by_their_area_or_density(lmp, variables, factor):
+    found = run(lmp, "", "inertia", **variables)
+    assert found["energy"][0] == pytest.approx(factor * found["exact"][0], rel=1e-4)
+
+
+def test_moments_of_triangles_depend_on_the_origin(lmp):
+    energies = [run(lmp, "", "inertia", x=x, y=y)["energy"][0] for x, y in ((0, 0), (5, 0), (5, 7))]
+    for one, other in ((0, 1), (0, 2), (1, 2)):
+        assert abs(energies[one] - energies[other]) > 0.1
+
+
+@pytest.mark.parametrize("style", ["rigid", "rigid/small"])
+@pytest.mark.parametrize("atoms, radius", [("tri", 2 / 3**0.5), ("line", 1.0)])
+def test_rigid_bodies_have_spheres_instead_of_lines_and_triangles(lmp, atoms, radius, style):
+    found = run(lmp, "", "triangles", atoms=atoms, style=style)
+    made, mass = found["mass"]
+    assert made == pytest.approx(4 / 3 * np.pi * radius**3, rel=1e-4) and abs(made - mass) > 0.5 * mass
+    # spheres have the angular velocity in omega, which only lines have
+    momentum = 2 * mass * (1 + 0.4 * radius**2 * (atoms == "line"))
+    moment = 2 * mass * (1 + 0.4 * radius**2)
+    energy, exact = found["energy"]
+    assert energy == pytest.approx(momentum**2 / moment / 2, rel=1e-4) and abs(energy - exact) > 0.04 * exact
+    body, shape, _ = found["angle"]
+    assert body == pytest.approx(momentum / moment / 2, abs=1e-4) and shape == pytest.approx(0.0, abs=1e-4)
 
 
 def test_results_are_numbers_behind_names():

@@ -1,8 +1,9 @@
-"""The decks of doc/upstream/rigid_npt, which show defects of LAMMPS' barostat for rigid bodies.
+"""The decks of doc/upstream/reports, which show defects of LAMMPS: of its barostat for rigid bodies, and of lines and
+triangles.
 
 ``doc/upstream/check`` runs all of them and writes decks and numbers into the reports beside them;
-tests/lammps/test_rigid_npt.py asserts that each defect is visible.  A deck is a scene (``water``, ``dumbbells``,
-``atoms``) and commands, so that each report contains one script that needs no other file.
+tests/lammps/test_upstream_reports.py asserts that each defect is visible.  A deck is a scene (``water``, ``dumbbells``,
+``atoms``) and commands, or commands alone, so that each report contains one script that needs no other file.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from benchmarks.engine.publish import write_block
 from running import ROOT, Lammps, make_lmp_wheel
 from versions import executable_of, version_of
 
-FOLDER = ROOT / "doc" / "upstream" / "rigid_npt"
+FOLDER = ROOT / "doc" / "upstream" / "reports"
 COMMAND = "doc/upstream/check"
 SEEDS = (1, 2, 3)
 RESULT = re.compile(r"^result (.*)$", re.MULTILINE)
@@ -30,7 +31,7 @@ NUMBER = re.compile(r"[-+]?\d")
 
 def deck(scene: str, task: str) -> str:
     """A script that needs no other file."""
-    return "".join((FOLDER / f"{part}.lmp").read_text() for part in (scene, task))
+    return "".join((FOLDER / f"{part}.lmp").read_text() for part in (scene, task) if part)
 
 
 def results(log: str) -> dict[str, list[float]]:
@@ -74,7 +75,7 @@ class Report:
         cells = []
         for name, form in self.digits.items():
             for values in zip(*(one[name] for one in found)):
-                text = format(statistics.mean(values), form)
+                text = format(statistics.mean(values) + 0.0, form)  # 0, not -0
                 if len(values) > 1:
                     error = statistics.stdev(values) / len(values) ** 0.5
                     text += f" ± {format(error, form)}"
@@ -163,6 +164,33 @@ REPORTS = [
     ),
     Refused("refused", "dumbbells", "", (), {"negative": {}, "triclinic": {}}),
     Virial("virial", "dumbbells", "virial", ("atomic", "molecular", "finite difference"), {}),
+    Report(
+        "inertia",
+        "",
+        "inertia",
+        ("energy", "exact energy"),
+        {
+            "data file, center 0 0": {},
+            "data file, center 5 0": {"x": 5},
+            "data file, center 5 7": {"x": 5, "y": 7},
+            "data file, center 0 0, density 2": {"density": 2},
+            "`set tri`": {"from": "set"},
+            "`set tri`, mass of density 3": {"from": "set", "density": 3},
+        },
+        {"energy": ".4f", "exact": ".4f"},
+    ),
+    Report(
+        "triangles",
+        "",
+        "triangles",
+        ("mass", "exact mass", "energy", "exact energy", "angle of body", "angle of shapes", "exact angle"),
+        {
+            f"{words}, `{style}`": {"atoms": atoms, "style": style}
+            for atoms, words in (("tri", "two triangles"), ("line", "two lines"))
+            for style in ("rigid", "rigid/small")
+        },
+        {"mass": ".4f", "energy": ".4f", "angle": ".4f"},
+    ),
 ]
 
 
