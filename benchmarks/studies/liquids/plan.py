@@ -208,6 +208,7 @@ class Plan:
     * ``temperatures``: duration in MAIN, with ``many``, at the steps at which temperatures are compared
     * ``floor``: duration for the limits from the forces
     * ``spectrum``: duration for the spectrum of a liquid
+    * ``shrinking``: steps until a liquid has its density, before the equilibration
     """
 
     starts: int = 5
@@ -218,6 +219,7 @@ class Plan:
     floor: float = 1.0
     spectrum: float = 4.1
     equilibration: int = 5000
+    shrinking: int = 4000
 
     def extent(self, scene, method, dt):
         """Number of starts, and duration in fs."""
@@ -227,6 +229,6 @@ class Plan:
         return self.starts, 1000 * (self.temperatures if long else self.duration)
 
 
-QUICK = Plan(1, 1, 1.26, 1.26, 1.26, 0.3, 1.1, equilibration=500)
+QUICK = Plan(1, 1, 1.26, 1.26, 1.26, 0.3, 1.1, equilibration=500, shrinking=1000)
 #: for temperatures within half a kelvin
 FULL = Plan(temperatures=200.0)

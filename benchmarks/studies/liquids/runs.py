@@ -95,7 +95,7 @@ def equilibrate(lab, plan, liquids=LIQUIDS, numbers=None):
     names = "types", "edge", "density", "mass", "temperature", "pair", "kspace"
     for liquid in liquids:
         own = {"liquid": liquid.key} | {name: getattr(liquid, name) for name in names}
-        own |= {"template": template(liquid), "steps": plan.equilibration}
+        own |= {"template": template(liquid), "steps": plan.equilibration, "shrinking": plan.shrinking}
         for start in numbers or range(plan.starts):
             name = f"equilibrate_{liquid.key}_{start}"
             jobs[name] = Job(_deck("equilibrate"), own | {"seed": 4711 + start}, plan.equilibration, plugin=False)

@@ -87,7 +87,8 @@ class Plan:
     samples, ``every`` between rows, ``frame`` between frames of the dump.
 
     ``hours``: no further batch of runs begins after this time.
-    ``equilibration``: steps for a start.  ``timed``: steps and rounds of the timing.
+    ``shrinking`` and ``equilibration``: steps for a start, as in the study of liquids.  ``timed``: steps and rounds of
+    the timing.
     """
 
     hours: float = 1.0
@@ -98,10 +99,11 @@ class Plan:
     equilibration: int = 3000
     blocks: int = 5
     timed: tuple = (1000, 5)
+    shrinking: int = 4000
 
     def lengths(self, series):
         """Variable of the deck -> picoseconds."""
         return {"settle": self.settle * (1 if series.temperature == TEMPERATURE else 3), "steps": self.duration}
 
 
-QUICK = Plan(0.0, 0.024, 0.24, 0.024, 0.048, 200, timed=(20, 2))
+QUICK = Plan(0.0, 0.024, 0.24, 0.024, 0.048, 200, timed=(20, 2), shrinking=1000)

@@ -179,7 +179,8 @@ def measure(lab, plan=None):
     plan = plan or (QUICK if lab.quick else Plan(hours=lab.hours))
     told, begun = trajectories(lab), time.monotonic()
     samples = [] if lab.quick else [one for one in read_samples(SAMPLES) if one.trajectory == told[one.method]]
-    commit, starts = provenance.commit("src", "benchmarks/studies/water"), Starts(equilibration=plan.equilibration)
+    commit = provenance.commit("src", "benchmarks/studies/water")
+    starts = Starts(equilibration=plan.equilibration, shrinking=plan.shrinking)
     seconds = timed(lab, equilibrate(lab, starts, [MODELS["tip4p"]], [1])["tip4p", 1], plan)
     while time.monotonic() - begun < 3600 * plan.hours or {sample.series for sample in samples} < set(TARGETS):
         chosen = next_runs(samples, len(TARGETS) if lab.quick else BATCH)
