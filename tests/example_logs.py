@@ -16,7 +16,7 @@ from pathlib import Path
 
 import yaml
 
-from running import EXAMPLES, ROOT, Lammps, make_lmp_wheel, tree_source
+from running import EXAMPLES, ROOT, Lammps, make_lmp_wheel, tree_source, waiting_environment
 
 CONFIGURATION = ROOT / "tests" / "lammps" / "run_tests.yaml"
 
@@ -98,7 +98,7 @@ def run_tests(lmp: Lammps, decks: list[Path], ranks: int, where: Path) -> dict[s
         [sys.executable, str(tool), f"--lmp-bin={lmp.executable}", "--config-file=config.yaml"]
         + ["--list-input=decks.txt"],
         cwd=where,
-        env={**os.environ, **lmp.environment, "OMP_NUM_THREADS": "1"},
+        env={**os.environ, **waiting_environment(), **lmp.environment, "OMP_NUM_THREADS": "1"},
         capture_output=True,
         text=True,
     )

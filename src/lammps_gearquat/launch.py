@@ -67,14 +67,19 @@ def started(command, folder, environment, output, errors=subprocess.STDOUT):
             end_session(process.pid)
 
 
+def _state(process):
+    """State of a process, a letter: Z of a zombie."""
+    return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+
+
 def processes_of_session(session):
     """List of the IDs of the processes in the session of a program: the program and all processes that it started."""
     members = []
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        with suppress(OSError):
-            fields = stat.read_text().rpartition(")")[2].split()
-            if int(fields[3]) == session and fields[0] != "Z":
-                members.append(int(stat.parent.name))
+    for name in os.listdir("/proc"):
+        with suppress(ValueError, OSError):
+            # a file is read for members only, because a test of all other processes has to be fast
+            if os.getsid(int(name)) == session and _state(name) != "Z":
+                members.append(int(name))
     return members
 
 

@@ -101,7 +101,7 @@ def test_a_cutoff_inside_the_largest_impact_parameter(tmp_path):
     assert "does not decay towards the cutoff of 2.5" in words and "longer cutoff is required" in words
 
 
-def test_other_settings_in_the_folder(tmp_path):
+def test_other_settings_in_the_folder(tmp_path, few_pilots):
     deck, out = colliding.write(tmp_path), tmp_path / "out"
     options = ("--largest", "3", "--count", "8", "--processes", "1", "--out", str(out))
     assert CliRunner().invoke(main, ["scatter", str(deck), "--temperature", "1", *options]).exit_code == 0
@@ -116,7 +116,7 @@ def test_other_settings_in_the_folder(tmp_path):
     assert "a folder with results" in refused("--merge", tmp_path)
 
 
-def test_flights_of_releases_that_drew_them_from_another_density(tmp_path):
+def test_flights_of_releases_that_drew_them_from_another_density(tmp_path, few_pilots):
     """Such folders are neither continued nor joined nor replayed, and nothing is changed."""
     deck, new, old = colliding.write(tmp_path), tmp_path / "new", tmp_path / "old"
     options = ("--temperature", "1", "--largest", "3", "--count", "8", "--processes", "1")

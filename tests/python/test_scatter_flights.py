@@ -24,6 +24,10 @@ from gearquat_analysis.units import UNITS
 from running import EXAMPLES
 
 WHOLE = ("--temperature", "1", "--largest", "3", "--seed", "4")
+#: the command in another process, as with the fixture few_pilots
+FEW_PILOTS = "from lammps_gearquat.scatter import pilots; pilots.ALONG = 1; from lammps_gearquat.cli import main; main()"
+#: for averages, whose errors are much larger than the errors of flights
+COARSE = {"tolerance 1e-10": "tolerance 1e-8"}
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +135,7 @@ def neufeld(temperature):
 
 
 def test_collision_integrals_of_argon(tmp_path):
-    run(colliding.write(tmp_path), tmp_path / "out", "--temperature", "2", "--sigma", "1", "--count", "4096")
+    run(colliding.write(tmp_path, **COARSE), tmp_path / "out", "--temperature", "2", "--sigma", "1", "--count", "4096")
     found = json.loads((tmp_path / "out" / "results.json").read_text())
     for name, known in neufeld(2.0).items():
         quantity = found["quantities"][name]
@@ -142,7 +146,7 @@ def test_collision_integrals_of_argon(tmp_path):
 
 def test_detailed_balance(tmp_path):
     """At equal temperatures rotation gains no energy; cold rotation gains energy."""
-    deck = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5)
+    deck = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5, **COARSE)
     gains = []
     for rotation in ("1", "0.2"):
         out = tmp_path / rotation
@@ -153,7 +157,7 @@ def test_detailed_balance(tmp_path):
     assert cold["value"] > 3.0 * cold["error"]
 
 
-def test_any_number_of_processes_and_parts(tmp_path):
+def test_any_number_of_processes_and_parts(tmp_path, few_pilots):
     """The files are the same on two processes, continued after an interruption at any point, and merged from three
     parts."""
     deck = colliding.write(tmp_path)
@@ -183,7 +187,7 @@ def test_any_number_of_processes_and_parts(tmp_path):
     assert contents(out) == expected
 
 
-def test_what_is_known_of_flights_is_said(tmp_path):
+def test_what_is_known_of_flights_is_said(tmp_path, few_pilots):
     """Messages about flights that existed before, that are in two parts, and that are in no part."""
     deck, (one, two, three) = colliding.write(tmp_path), (tmp_path / name for name in "abc")
     run(deck, one, *WHOLE, "--count", "24")
@@ -196,12 +200,11 @@ def test_what_is_known_of_flights_is_said(tmp_path):
     assert len((three / "flights.csv").read_text().splitlines()) == 1 + 32
 
 
-def test_killed_and_continued(tmp_path):
+def test_killed_and_continued(tmp_path, few_pilots):
     deck, out = colliding.write(tmp_path), tmp_path / "out"
     options = [*WHOLE, "--count", "400", "--processes", "1", "--out", str(out)]
-    code = "from lammps_gearquat.cli import main; main()"
     process = subprocess.Popen(
-        [sys.executable, "-c", code, "scatter", str(deck), *options], start_new_session=True
+        [sys.executable, "-c", FEW_PILOTS, "scatter", str(deck), *options], start_new_session=True
     )
     table = out / "flights.csv"
     while not (table.exists() and table.stat().st_size > 5000):
@@ -306,7 +309,7 @@ def test_all_styles_of_units(tmp_path, style, reduced):
 # --- several temperatures -------------------------------------------------------------------------
 def test_several_temperatures_of_molecules(tmp_path):
     """Averages agree with flights at each temperature alone, and rotation gains nothing."""
-    deck = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5)
+    deck = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5, **COARSE)
     options = ("--temperature", "2", "--temperature", "1", "--largest", "3", "--count", "768")
     output = run(deck, tmp_path / "both", *options)
     assert "temperatures 1, 2: 768 flights" in output and "temperature 1:" in output
@@ -325,7 +328,7 @@ def test_several_temperatures_of_molecules(tmp_path):
 
 
 # --- one flight -----------------------------------------------------------------------------------
-def test_a_flight_as_a_dump(tmp_path):
+def test_a_flight_as_a_dump(tmp_path, few_pilots):
     """The dump contains the flight of the table, and the analysis reads it."""
     deck, out = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5), tmp_path / "out"
     run(deck, out, *WHOLE, "--count", "8")
@@ -350,7 +353,7 @@ def test_a_flight_as_a_dump(tmp_path):
     assert len(Poses(universe.atoms).run().results.time) == len(times)
 
 
-def test_flights_that_cannot_be_replayed(tmp_path):
+def test_flights_that_cannot_be_replayed(tmp_path, few_pilots):
     deck, out = colliding.write(tmp_path), tmp_path / "out"
     run(deck, out, *WHOLE, "--first", "4", "--count", "8")
 
@@ -388,13 +391,12 @@ def heeds_interrupts():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def test_interrupted(tmp_path):
+def test_interrupted(tmp_path, few_pilots):
     """Ctrl-C says that flights are kept, and the same command continues."""
     deck, out = colliding.write(tmp_path), tmp_path / "out"
     options = [*WHOLE, "--count", "40000", "--processes", "1", "--out", str(out)]
-    code = "from lammps_gearquat.cli import main; main()"
     process = subprocess.Popen(
-        [sys.executable, "-c", code, "scatter", str(deck), *options],
+        [sys.executable, "-c", FEW_PILOTS, "scatter", str(deck), *options],
         start_new_session=True,
         preexec_fn=heeds_interrupts,
         stderr=subprocess.PIPE,

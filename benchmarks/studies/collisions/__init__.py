@@ -29,7 +29,7 @@ TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 3e-14)
 #: energy errors, relative to the depth, at which evaluations are compared
 LEVELS = 10.0 ** -np.arange(6, 12)
 #: number of scenes: by default (five minutes on one core), with --full (an hour), and with --quick
-SCENES, FULL, QUICK = 75, 1000, 6
+SCENES, FULL, QUICK = 75, 1000, 2
 
 
 @dataclass(frozen=True)

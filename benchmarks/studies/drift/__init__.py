@@ -21,7 +21,7 @@ from benchmarks.engine.statistics import slope
 
 from . import peers
 
-STEPS, QUICK_STEPS, SAMPLES = 10_000_000, 100_000, 2000
+STEPS, QUICK_STEPS, SAMPLES = 10_000_000, 20_000, 2000
 #: messages of LAMMPS and of the fix for coordinates and energies that are no longer finite
 NOT_FINITE = ("Non-numeric", "Fix gear/quat: blow-up", "values can follow")
 #: a slope below this number of standard errors, which are estimates themselves, is not a drift

@@ -1,7 +1,6 @@
 """Bodies and their sites: masses, shapes, principal axes."""
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 #: a principal moment below this fraction of the largest counts as zero, as in the fix
 LINEAR_FRACTION = 1.0e-7
@@ -174,6 +173,9 @@ class Bodies:
 
     def axes_space(self, q):
         """Principal axes (B, 3, 3) as rows, in space, of bodies turned by q (B, 4)."""
+        # imported here because it takes 0.3 s, and processes that only need masses and shapes start for every trial
+        from scipy.spatial.transform import Rotation
+
         turn = Rotation.from_quat(q, scalar_first=True).as_matrix()
         return np.einsum("bij,bkj->bki", turn, self.axes)
 

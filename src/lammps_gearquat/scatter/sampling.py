@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 from scipy.special import ndtri
-from scipy.stats import qmc
 
 from .density import density_of
 from .pair import Start
@@ -145,6 +144,9 @@ def _momenta(pair, quaternion, thermal, columns):
 
 def uniform(seed, numbers, dimension):
     """Points (n, dimension) of flights ``numbers`` (n,), strictly between 0 and 1."""
+    # imported here because it takes 0.5 s, which a process whose deck is refused does not need
+    from scipy.stats import qmc
+
     points = np.empty((len(numbers), dimension))
     for replica in np.unique(numbers % REPLICAS):
         own = np.flatnonzero(numbers % REPLICAS == replica)
