@@ -50,6 +50,14 @@ def has_random_forces(text):
     )
 
 
+def has_lines_or_triangles(text):
+    """True if the atom style has lines or triangles."""
+    return any(
+        line.words[0] == "atom_style" and {"line", "tri"} & set(line.words[1:])
+        for line in lines_of(text)
+    )
+
+
 def converted(line):
     """The command with gear/quat in place of the rigid style, all other words kept.
 

@@ -131,7 +131,7 @@ def test_friction_that_is_not_measured_is_told(lmp_wheel, style, told):
 
 def test_a_stated_number_that_heats_is_warned_of(lmp_tree, data):
     after = "fix l all langevin 300 300 100 4711"
-    assert "make heat of" in run(lmp_tree, data, "values 9", after=after, dt=SHORT).stdout
+    assert "turn them into heat" in run(lmp_tree, data, "values 9", after=after, dt=SHORT).words
 
 
 def test_the_friction_of_a_thermostat(lmp_tree, data):

@@ -31,7 +31,7 @@ AGAIN = "\nunfix move\nfix move all gear/quat molecule\nrun 1"
 BEGINS = re.compile(r"Fix gear/quat move: \d values, for vibrations of (\S+) and")
 TOO_FAST = re.compile(r"move: at step (\d+) vibrations of (\S+) and rotations of \S+ radians in a step are more than (.*) can follow")
 MORE = re.compile(r"move: at step (\d+) vibrations of (\S+) and rotations of \S+ radians in a step require 5 values")
-ADVICE = re.compile(r"use a time step of (\S+) or shorter")
+ADVICE = re.compile(r"can follow for long; use a time step of (\S+) or shorter")
 
 
 def condense(lmp, dt, run, words=COLD, ranks=1):
