@@ -393,7 +393,8 @@ void Barostat::refuse_narrow_box(int direction, double edge) const
   error->all(
       FLERR,
       "Fix gear/quat: in step {} the edge of the box along {}, {:.4g}, would be shorter than "
-      "a body, whose atoms are {:.4g} apart; use a smaller target pressure or more bodies",
+      "a body, whose atoms are {:.4g} apart; use more bodies, a smaller target pressure, or "
+      "iso, which keeps the shape of the box",
       update->ntimestep, "xyz"[direction], edge, longest_body);
 }
 

@@ -217,9 +217,10 @@ def test_in_two_dimensions(lmp_wheel):
 # --- invariants ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("words, tolerance", [("iso {} 1.0", 1e-13), ("aniso {} 1.0", 1e-12)], ids=["iso", "aniso"])
+@pytest.mark.parametrize("words, tolerance", [("iso {} 1.0", 1e-13), ("aniso {} 300.0", 1e-12)], ids=["iso", "aniso"])
 def test_lengths_within_a_molecule_do_not_change(lmp_wheel, data, words, tolerance):
-    """In 1e5 steps, and in 400 runs of 10; positions many periods away have fewer digits."""
+    """In 1e5 steps, and in 400 runs of 10; positions many periods away have fewer digits.  With separate edges a slow
+    barostat keeps the box of this liquid from becoming narrower than a molecule."""
     words = words.format("0.3 0.6") + " temp 0.7 0.9 0.8"
     many = "label loop\nvariable i loop 400\nrun 10 start 0 stop 4000\nnext i\njump SELF loop"
     settings = dict(thermo=10000, box="read_data data.trimers")

@@ -210,7 +210,7 @@ def test_an_edge_shorter_than_a_body(lmp_wheel, spacing, words):
     """At the beginning of a run and in a run, before atoms are lost."""
     trimers(lmp_wheel.folder / "data.trimers", spacing=spacing)
     deck = pressed(words + " ptemp 1.0", 0.002, 20000, before="neigh_modify one 20000 page 200000")
-    result = lmp_wheel.refuse(deck, "use a smaller target pressure or more bodies")
+    result = lmp_wheel.refuse(deck, "use more bodies, a smaller target pressure, or iso")
     step, axis, edge, apart = NARROW.search(result.words).groups()
     assert (step == "0") == (spacing == 0.25) and axis in words.partition(" ")[0].replace("iso", "x")
     longest = max(np.linalg.norm(a - b) for a in ARMS for b in ARMS)
