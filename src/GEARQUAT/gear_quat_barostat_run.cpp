@@ -328,7 +328,7 @@ void Barostat::warn_of_box(const std::string &when, double h)
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: {}the box oscillates by {:.2g} radians in a step, {:.0f} % of "
-                   "what the method follows; use a Pdamp of {:.2g} or longer",
+                   "the limit of the method; use a Pdamp of {:.2g} or longer",
                    when, frequency.radians(h), 100.0 * frequency.part(h), period_for_box(h));
 }
 

@@ -30,7 +30,7 @@ SCHEMES = {
     "values 6 corrector gear": 0.42,
 }
 AT_START = re.compile(r"gear/quat: the box (oscillates|would oscillate) by (\S+) radians in a step")
-LATER = re.compile(r"in step (\d+) the box oscillates by (\S+) radians in a step, (\d+) % of what")
+LATER = re.compile(r"in step (\d+) the box oscillates by (\S+) radians in a step, (\d+) % of the limit of the method")
 LONGER = re.compile(r"use a Pdamp of (\S+) or longer")
 
 
@@ -66,7 +66,7 @@ def test_a_box_that_oscillates_too_fast(lmp_wheel):
             result = lmp_wheel.succeed(crystal(words, dt[part], "run 500\nrun 500"))
             ((verb, radians),) = AT_START.findall(result.words)
             assert verb == "oscillates" and printed(radians, part * fastest, 0.01), (words, part)
-            percent = re.search(r"step, (\d+) % of what the method", result.words)[1]
+            percent = re.search(r"step, (\d+) % of the limit of the method", result.words)[1]
             assert float(percent) == pytest.approx(100 * part, abs=1.5)
             assert not LATER.search(result.words)
             # the method is stable with it

@@ -173,7 +173,7 @@ class Bodies:
 
     def axes_space(self, q):
         """Principal axes (B, 3, 3) as rows, in space, of bodies turned by q (B, 4)."""
-        # imported here because it takes 0.3 s, and processes that only need masses and shapes start for every trial
+        # imported here because it takes long, and processes that only need masses and shapes start for every trial
         from scipy.spatial.transform import Rotation
 
         turn = Rotation.from_quat(q, scalar_first=True).as_matrix()

@@ -144,7 +144,7 @@ def _momenta(pair, quaternion, thermal, columns):
 
 def uniform(seed, numbers, dimension):
     """Points (n, dimension) of flights ``numbers`` (n,), strictly between 0 and 1."""
-    # imported here because it takes 0.5 s, which a process whose deck is refused does not need
+    # imported here because it takes long, and a process whose deck is refused does not need it
     from scipy.stats import qmc
 
     points = np.empty((len(numbers), dimension))
