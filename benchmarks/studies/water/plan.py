@@ -77,6 +77,8 @@ TARGETS = {
     COLD[0]: 0.5,
     COLD[1]: 0.5,
 }
+#: the same of series that come before all others: those whose difference of temperatures must be known to 0.3 K
+FIRST = {LONG["tip4p"]: 2.2, Series("tip4p", OURS, 3.0): 2.2}
 #: number of runs between two looks at the clock
 BATCH = 4
 
@@ -93,11 +95,11 @@ class Plan:
 
     hours: float = 1.0
     settle: float = 20.0
-    duration: float = 100.0
+    duration: float = 200.0
     every: float = 0.024
     frame: float = 0.096
     equilibration: int = 3000
-    blocks: int = 5
+    blocks: int = 10
     timed: tuple = (1000, 5)
     shrinking: int = 4000
 
@@ -106,4 +108,4 @@ class Plan:
         return {"settle": self.settle * (1 if series.temperature == TEMPERATURE else 3), "steps": self.duration}
 
 
-QUICK = Plan(0.0, 0.024, 0.24, 0.024, 0.048, 200, timed=(20, 2), shrinking=1000)
+QUICK = Plan(0.0, 0.024, 0.24, 0.024, 0.048, 200, 5, timed=(20, 2), shrinking=1000)
