@@ -292,6 +292,11 @@ class StepControl {
   static constexpr double CLEAR_OF_LIMIT = 0.9;
   /// A change of the number of values requires an error that is smaller by this factor.
   static constexpr double FEWER = 2.0, MORE = 3.0;
+  /// After this many steps per value with the same number of values, one more value requires only a
+  /// smaller error.  In a uniform rotation the derivatives of even order do not turn the body, so
+  /// with an even number of values the next error is about as large as the present one, and only
+  /// the one after it is much smaller.
+  static constexpr int PATIENCE = 25;
   /// If the step does not change, another value requires that the step could be longer by this
   /// factor.
   static constexpr double CLEARLY_MORE = 1.02;
@@ -369,7 +374,8 @@ class StepControl {
       }
     }
     if (values < most && steady.values > values) {
-      const double more = std::min(growth, SAFETY * allowed(MORE * errors.more, values + 1));
+      const double factor = steady.values > PATIENCE * values ? 1.0 : MORE;
+      const double more = std::min(growth, SAFETY * allowed(factor * errors.more, values + 1));
       if (more > ratio) {
         ratio = more;
         choice.values = values + 1;
