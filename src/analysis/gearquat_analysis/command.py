@@ -48,7 +48,7 @@ def _telling_warnings():
         "--select",
         default="all",
         show_default=False,
-        help="Atoms, in MDAnalysis' words, such as 'resid 1-500'.",
+        help="Atoms to analyze, in the selection language of MDAnalysis, such as 'resid 1-500'.",
     ),
     cloup.option(
         "--reference",
