@@ -5,7 +5,7 @@ from functools import cache, partial
 
 import numpy as np
 
-from benchmarks.engine import Curve, Finding, Measurement, Panel, Study, Table, draw
+from benchmarks.engine import Curve, Finding, Measurement, Panel, Study, Table, draw, provenance
 from benchmarks.reference.central import CollisionIntegrals, Gromacs
 from benchmarks.studies.collisions import evaluations as work_at
 
@@ -105,7 +105,8 @@ def _errors(lab, sized):
     asked = sized(SEEDS["asked"])
     parts = len(errors.CENTRAL) * len(asked) + len(errors.PAIRS) * len(asked)
     tick = partial(lab.advance, 1 / parts)
-    folder = lab.out / ("errors_quick" if lab.quick else "errors")
+    commit = provenance.commit("src", "benchmarks/studies/scatter").replace(" ", "_")
+    folder = lab.out / f"errors_{'quick' if lab.quick else commit}"  # finished seeds of this commit are kept
     found = errors.of_atoms(folder, sized(SEEDS["atoms"]), asked, tick)
     return found | errors.of_molecules(folder, sized(SEEDS["molecules"]), asked, lab.jobs, tick)
 
