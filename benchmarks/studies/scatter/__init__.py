@@ -105,8 +105,8 @@ def _errors(lab, sized):
     asked = sized(SEEDS["asked"])
     parts = len(errors.CENTRAL) * len(asked) + len(errors.PAIRS) * len(asked)
     tick = partial(lab.advance, 1 / parts)
-    commit = provenance.commit("src", "benchmarks/studies/scatter").replace(" ", "_")
-    folder = lab.out / f"errors_{'quick' if lab.quick else commit}"  # finished seeds of this commit are kept
+    kept_for = "quick" if lab.quick else provenance.commit("src", "benchmarks/studies/scatter").replace(" ", "_")
+    folder = lab.out / f"errors_{kept_for}"
     found = errors.of_atoms(folder, sized(SEEDS["atoms"]), asked, tick)
     return found | errors.of_molecules(folder, sized(SEEDS["molecules"]), asked, lab.jobs, tick)
 

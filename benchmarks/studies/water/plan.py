@@ -77,8 +77,6 @@ TARGETS = {
     COLD[0]: 0.5,
     COLD[1]: 0.5,
 }
-#: the same of series that come before all others: those whose difference of temperatures must be known to 0.3 K
-FIRST = {LONG["tip4p"]: 2.1, Series("tip4p", OURS, 3.0): 2.1, LONG["spce"]: 0.2}
 #: number of runs between two looks at the clock
 BATCH = 4
 

@@ -18,7 +18,7 @@ from benchmarks.studies.liquids.runs import equilibrate, template
 from benchmarks.studies.liquids.plan import Plan as Starts
 
 from .frames import read_motion
-from .plan import BATCH, EXTRAPOLATED, FIRST, LONG, MODELS, OURS, QUICK, RIVAL, TARGETS, TEMPERATURE, Plan, Series
+from .plan import BATCH, EXTRAPOLATED, LONG, MODELS, OURS, QUICK, RIVAL, TARGETS, TEMPERATURE, Plan, Series
 
 FOLDER = Path(__file__).parent
 SAMPLES = FOLDER / "samples.csv"
@@ -161,16 +161,13 @@ def timed(lab, data, plan):
 
 
 def next_runs(samples, number):
-    """List of (Series, number of start) of the next runs: series without samples, then those of FIRST, then all others.
-
-    Of these, it is each time the series that lacks the largest part of its target.
-    """
+    """List of (Series, number of start) of the next runs: each time the series that lacks the largest part of its target."""
     ps, starts, chosen = dict.fromkeys(TARGETS, 0.0), dict.fromkeys(TARGETS, 0), []
     for sample in samples:
         ps[sample.series] += sample.ps
         starts[sample.series] = max(starts[sample.series], sample.start)
     for _ in range(number):
-        series = min(TARGETS, key=lambda one: (ps[one] > 0, ps[one] >= 1000 * FIRST.get(one, 0.0), ps[one] / TARGETS[one]))
+        series = min(TARGETS, key=lambda one: ps[one] / TARGETS[one])
         ps[series] += Plan.duration
         starts[series] += 1
         chosen.append((series, starts[series]))
