@@ -5,7 +5,7 @@ from functools import cache, partial
 
 import numpy as np
 
-from benchmarks.engine import Curve, Finding, Measurement, Panel, Study, Table, draw, provenance
+from benchmarks.engine import Curve, Finding, Measurement, Panel, Study, Table, draw
 from benchmarks.reference.central import CollisionIntegrals, Gromacs
 from benchmarks.studies.collisions import evaluations as work_at
 
@@ -105,8 +105,7 @@ def _errors(lab, sized):
     asked = sized(SEEDS["asked"])
     parts = len(errors.CENTRAL) * len(asked) + len(errors.PAIRS) * len(asked)
     tick = partial(lab.advance, 1 / parts)
-    kept_for = "quick" if lab.quick else provenance.commit("src", "benchmarks/studies/scatter").replace(" ", "_")
-    folder = lab.out / f"errors_{kept_for}"
+    folder = flown.kept(lab) / "errors"
     found = errors.of_atoms(folder, sized(SEEDS["atoms"]), asked, tick)
     return found | errors.of_molecules(folder, sized(SEEDS["molecules"]), asked, lab.jobs, tick)
 

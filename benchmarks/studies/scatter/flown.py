@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.engine import provenance
 from benchmarks.engine.decks import EXAMPLES
 from benchmarks.engine.runner import LammpsError
 from benchmarks.reference.encounters import Charges, Dispersion, Encounter
@@ -28,12 +29,18 @@ class Run:
     errors: dict
 
 
+def kept(lab):
+    """Folder of the flights that a later run of this study uses again: there is one for each commit."""
+    commit = provenance.commit("src", "examples/collisions", "benchmarks/studies/scatter").replace(" ", "_")
+    return lab.out / ("quick" if lab.quick else f"commit_{commit}")
+
+
 def command(lab, name, deck, *options):
-    """Run of ``gearquat scatter`` on a deck of the examples; its output is in the folder ``name``.
+    """Run of ``gearquat scatter`` on a deck of the examples; its output is in ``name`` in the folder ``kept``.
 
     Raises LammpsError.
     """
-    out = lab.out / name
+    out = kept(lab) / name
     arguments = [str(Path(sys.executable).with_name("gearquat")), "scatter", str(DECKS / deck)]
     arguments += [*map(str, options), "--processes", str(lab.jobs), "--out", str(out)]
     done = subprocess.run(arguments, capture_output=True, text=True, cwd=lab.out)
