@@ -289,7 +289,8 @@ class Deck:
         error = _apart(ends["rigid", 4], fine)
         ours = _apart(ends["gear", 4], fine)
         sizes = np.array([moved[0], np.sqrt(np.mean(fine[:, 4:] ** 2))])
-        coarse = np.maximum(_apart(ends["rigid", 1], fine), 1e-300)
+        rounding = 1e-9 * sizes + 1e-15
+        coarse = np.maximum(_apart(ends["rigid", 1], fine), rounding)
         verdict.ratio = float(np.max(_apart(ends["gear", 1], fine) / coarse))
         verdict.notes.append(
             f"{len(fine)} atoms moved by {moved[0]:.1e}; apart {ours[0]:.1e} {ours[1]:.1e}, "
@@ -301,7 +302,7 @@ class Deck:
             verdict.reason = (
                 "random forces leave nothing to compare" if chance else "reference too coarse"
             )
-        elif (ours <= WITHIN * error + 1e-9 * sizes + 1e-15).all():
+        elif (ours <= WITHIN * error + rounding).all():
             verdict.result = "agrees"
         elif convert.has_lines_or_triangles(self.text):
             verdict.result, verdict.reason = "runs", TAKES_FOR_SPHERES
