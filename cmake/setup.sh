@@ -67,6 +67,7 @@ missing_for_tests() {
   have ninja || echo ninja-build
   have ccache || echo ccache
   have xz || echo xz-utils
+  have git || echo git
   have valgrind || echo valgrind
   have mpicxx.openmpi || echo libopenmpi-dev
   have mpirun.openmpi || echo openmpi-bin
@@ -160,31 +161,7 @@ install_repository() {
     do_quietly "installing lammps-gearquat[$extra] into .venv" pip_install_repository "[$extra]"
     printf '%s\n%s\n' "$print" "$extra" >"$stamp"
   fi
-  # the test cases of the paper, which examples/run is for, have no water
-  [ "${GEARQUAT_PROGRAM:-}" = examples/run ] || make_water
   exec 9>&-
-}
-
-# make_water: creates data.water of the examples if it is missing
-make_water() {
-  local folder words
-  while read -r folder words; do
-    [ -f "$ROOT/examples/$folder/data.water" ] || do_quietly "making examples/$folder/data.water" \
-      make_data_water "../$folder" $words
-  done <<'EOF'
-water
-isokinetic -var edge 6
-water_npt -var edge 6 -var bonds yes -var forces pppm
-EOF
-}
-
-# make_data_water FOLDER VARIABLES: creates the file completely or not at all
-make_data_water() {
-  local folder="$1" part="$1/data.water.part"
-  shift
-  cd "$ROOT/examples/water"
-  env -u LAMMPS_PLUGIN_PATH OMP_NUM_THREADS=1 "$ROOT/.venv/bin/lmp" -in in.equilibrate -log none -nocite -var out "$part" "$@"
-  mv "$part" "$folder/data.water"
 }
 
 # install_listed EXTRA: installs the requirements under EXTRA in pyproject.toml in .venv, without this repository

@@ -24,6 +24,13 @@ def blocks(page: str, language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", text, re.M | re.S)
 
 
+def unpack(folder: Path) -> Path:
+    """``folder`` with the files of the commit alone, as in a fresh clone."""
+    archive = subprocess.run(["git", "-C", ROOT, "archive", "HEAD"], capture_output=True, check=True).stdout
+    subprocess.run(["tar", "-x", "-C", folder], input=archive, check=True)
+    return folder
+
+
 def paste(text: str, folder: Path) -> subprocess.CompletedProcess[str]:
     """The output of a shell in ``folder`` with ``text`` as its input."""
     path = f"{sysconfig.get_path('scripts')}:{os.environ['PATH']}"

@@ -1,7 +1,6 @@
 """The command gearquat for users: help with working examples, version, missing extra."""
 
 import re
-import shutil
 import subprocess
 import sys
 from importlib import metadata
@@ -13,25 +12,23 @@ from click.testing import CliRunner
 
 from lammps_gearquat.cli import main
 from dumps import Motion, write
-from pages import paste
-from running import EXAMPLES, ROOT
+from pages import paste, unpack
+from running import ROOT
 
-COMMANDS = ("cost", "horizon", "analyze", "scatter")
+COMMANDS = ("", "cost", "horizon", "analyze", "scatter")
 
 
 def examples_of(command):
     """Lines below "Examples" of a help page, as they are printed."""
-    result = CliRunner().invoke(main, [command, "-h"])
+    result = CliRunner().invoke(main, [*command.split(), "-h"])
     assert result.exit_code == 0, result.output
     return re.search(r"^Examples.*\n((?:  .*\n)+)", result.output, re.M)[1]
 
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_examples_of_the_help_can_be_pasted(command, tmp_path):
-    for folder in ("common", "case1", "case2", "water", "collisions"):
-        shutil.copytree(EXAMPLES / folder, tmp_path / "examples" / folder)
-    done = paste(examples_of(command), tmp_path)
-    assert list(tmp_path.rglob(f"gearquat-{command}/*.png"))
+    done = paste(examples_of(command), unpack(tmp_path))
+    assert list(tmp_path.rglob(f"gearquat-{command or 'cost'}/*.png"))
     # and no progress bar if the output is not a terminal
     assert "%|" not in done.stderr
 

@@ -4,7 +4,10 @@ import runpy
 
 import numpy as np
 import pytest
+from pages import unpack
 from scene_files import read_atoms
+
+from running import EXAMPLES
 
 MOTIONS = ("first", "second", "rigid")
 METHODS = ("gear", "rigid", "rigid_big", "rigid_verlet")
@@ -144,6 +147,21 @@ def test_coated_body_is_repelled_by_every_sphere(examples):
     epsilon, r = np.sqrt(EPSILON["coat"] * EPSILON["cage"]), np.linspace(2.0, 8.0, 100)
     force = 24 * epsilon / r * (2 * (10 / r) ** 12 - (10 / r) ** 6) - 1.0 / r**2
     assert (force > 0).all() and (np.diff(force) < 0).all()
+
+
+# --- all decks ----------------------------------------------------------------------------------
+@pytest.fixture(scope="module")
+def fresh(tmp_path_factory):
+    """The examples of a fresh clone."""
+    return unpack(tmp_path_factory.mktemp("fresh")) / "examples"
+
+
+DECKS = sorted(deck.relative_to(EXAMPLES) for deck in EXAMPLES.rglob("in.*") if deck.parent.name != "common")
+
+
+@pytest.mark.parametrize("deck", DECKS, ids=str)
+def test_decks_run_in_a_fresh_clone(lmp_wheel, fresh, deck):
+    lmp_wheel.succeed(fresh / deck, {"steps": 1} if deck.name == "in.equilibrate" else {})
 
 
 # --- variables that all decks share -------------------------------------------------------------

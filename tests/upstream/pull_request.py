@@ -245,8 +245,6 @@ def new_files(tree: Path, author: str, email: str) -> None:
     (package / "README").write_text(package_readme(author, email))
     (tree / "doc" / "src" / "fix_gear_quat.rst").write_text(manual_page())
     examples = copy_examples(tree)
-    for made in examples.glob("*/data.water"):
-        made.unlink()
     (examples / "README").write_text(examples_readme(examples))
     for file in (*examples.glob("*/README"), *examples.glob("*/in.*")):
         file.write_text(without_benchmarks(file.read_text()))
