@@ -10,6 +10,7 @@ if(CMAKE_VERSION VERSION_LESS 3.19)
     "this is ${CMAKE_VERSION}. Copy src/GEARQUAT into LAMMPS' src and add it to STANDARD_PACKAGES instead.")
 endif()
 
+option(GEARQUAT_CHECKS "Compare the collective calls of all ranks, for tests" OFF)
 option(GEARQUAT_PRECOMPILE_HEADERS "Build LAMMPS with precompiled headers (half the compile time)" OFF)
 
 get_filename_component(GEARQUAT_FOLDER "${CMAKE_CURRENT_LIST_DIR}/../src/GEARQUAT" ABSOLUTE)
@@ -42,6 +43,9 @@ function(gearquat_add_to_lammps)
   set_source_files_properties("${LAMMPS_SOURCE_DIR}/modify.cpp" "${LAMMPS_SOURCE_DIR}/lammps.cpp"
     ${GEARQUAT_SOURCES}
     PROPERTIES INCLUDE_DIRECTORIES "${GEARQUAT_FOLDER}")
+  if(GEARQUAT_CHECKS)
+    set_property(SOURCE ${GEARQUAT_SOURCES} APPEND PROPERTY COMPILE_DEFINITIONS GEARQUAT_CHECKS)
+  endif()
 
   if(GEARQUAT_PRECOMPILE_HEADERS)
     target_precompile_headers(lammps PRIVATE

@@ -169,7 +169,7 @@ configure_tree() {
   esac
   cmake -S "$TREE_SOURCE/cmake" -B "$build" -G Ninja \
     -D CMAKE_PROJECT_lammps_INCLUDE="$ROOT/cmake/lammps-gearquat.cmake" \
-    -D GEARQUAT_PRECOMPILE_HEADERS=on \
+    -D GEARQUAT_CHECKS=on -D GEARQUAT_PRECOMPILE_HEADERS=on \
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_FLAGS_RELEASE="$flags" \
     -D CMAKE_CXX_COMPILER_LAUNCHER=ccache -D CMAKE_CUSTOM_LINKER=default \
     -D BUILD_SHARED_LIBS=on -D BUILD_OMP=off -D FFT=KISS \

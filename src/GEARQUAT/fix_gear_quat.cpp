@@ -20,6 +20,7 @@
 #include "gear_quat_minimize.h"
 #include "gear_quat_motion.h"
 #include "gear_quat_outputs.h"
+#include "gear_quat_ranks.h"
 #include "gear_quat_report.h"
 #include "gear_quat_restart.h"
 #include "gear_quat_scene.h"
@@ -303,6 +304,7 @@ void FixGearQuat::end_step(double **f, double **torque)
   if (box_change != NO_BOX_CHANGE) ownership->note_box();
   if (step->shows_local_data()) show_bodies();
   if (step->coupling && step->coupling->is_tilted()) next_reneighbor = update->ntimestep + 1;
+  compare_calls(world);
 }
 
 /// With keyword tolerance only, when all fixes have finished the step.

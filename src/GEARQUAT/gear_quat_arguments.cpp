@@ -416,7 +416,7 @@ std::vector<tagint> Arguments::group_ids(int groupbit) const
                "Fix gear/quat group: atom {} is in more than one of the groups; an "
                "atom belongs to one body at most",
                twice);
-  MPI_Allreduce(used.data(), used_anywhere.data(), (int) groups.size(), MPI_INT, MPI_MAX, world);
+  reduce(MPI_MAX, used.data(), used_anywhere.data(), used.size(), world);
   for (size_t g = 0; g < groups.size(); ++g)
     if (!used_anywhere[g])
       error->all(FLERR,

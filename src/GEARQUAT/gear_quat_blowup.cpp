@@ -139,7 +139,9 @@ tagint find_lost(LAMMPS *lmp, const Scheme &scheme, const Fastest &fastest, doub
     mine = {is_thin ? rigid.inertia[smallest] : 0.0, rigid.inertia[largest], omega,
             longest_step(scheme, rigid, fastest.state, h)};
   }
-  MPI_Allreduce(&mine, &lost, 4, MPI_DOUBLE, MPI_SUM, lmp->world);
+  constexpr size_t N = sizeof(Lost) / sizeof(double);
+  reduce(MPI_SUM, reinterpret_cast<double *>(&mine), reinterpret_cast<double *>(&lost), N,
+         lmp->world);
   return id;
 }
 
@@ -262,14 +264,11 @@ std::string Blowup::agree(const std::string &text, int ibody, int bad, const Mee
   const bool any = std::any_of(sites.begin(), sites.end(), [&](const auto &site) {
     return site.body == ibody;
   });
-  struct {
-    double distance2;
-    int rank;
-  } here = {NONE, comm->me}, best;
-  if (any) here.distance2 = std::min(met.distance2, std::numeric_limits<double>::max());
-  if (bad >= 0) here.distance2 = -1.0;
-  MPI_Allreduce(&here, &best, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
-  return broadcast(text, world, best.rank);
+  double here = NONE;
+  if (any) here = std::min(met.distance2, std::numeric_limits<double>::max());
+  if (bad >= 0) here = -1.0;
+  const bool best = !(here > over_ranks(MPI_MIN, here, world));
+  return broadcast(text, world, over_ranks(MPI_MIN, best ? comm->me : comm->nprocs, world));
 }
 
 /// The motion of this body is certainly unstable; the errors of the other bodies in the last step

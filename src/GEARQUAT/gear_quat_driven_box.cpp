@@ -181,7 +181,7 @@ void DrivenBox::share(std::vector<Vector> &of_moved) const
   for (size_t n = 0; n < bodies.large.size(); ++n)
     if (bodies.large[n] < bodies.nowned())
       std::copy_n(of_moved[bodies.large[n]].data(), 3, &here[3 * n]);
-  MPI_Allreduce(here.data(), all.data(), (int) here.size(), MPI_DOUBLE, MPI_SUM, world);
+  reduce(MPI_SUM, here.data(), all.data(), here.size(), world);
   for (size_t n = 0; n < bodies.large.size(); ++n)
     std::copy_n(&all[3 * n], 3, of_moved[bodies.large[n]].data());
 }

@@ -6,6 +6,7 @@
 #include "gear_quat_driven_cell.h"
 
 #include "gear_quat_images.h"
+#include "gear_quat_ranks.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -188,8 +189,8 @@ void DrivenCell::begin_run(bool begins, double h)
     double here = 0.0;
     for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
       here += translational_energy(bodies.rigid_of(ibody), bodies.state_of(ibody).velocity);
-    MPI_Allreduce(&here, &words.start, 1, MPI_DOUBLE, MPI_SUM, world);
-    words.start *= force->mvv2e / (force->boltz * std::max<bigint>(1, bodies.number()));
+    words.start = over_ranks(MPI_SUM, here, world) * force->mvv2e /
+        (force->boltz * std::max<bigint>(1, bodies.number()));
     if (words.start == 0.0) words.start = 1.0;
     words.stop = words.start;
   }

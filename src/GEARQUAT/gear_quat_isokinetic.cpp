@@ -25,8 +25,8 @@ IsokineticConstraint::IsokineticConstraint(LAMMPS *lmp, Bodies &bodies, const Sc
 /// Sums the contributions of owned bodies over all ranks, and resets the local sums.
 void IsokineticConstraint::sum()
 {
-  static constexpr int N = sizeof(KineticSums) / sizeof(double);
-  MPI_Allreduce(&here, &sums, N, MPI_DOUBLE, MPI_SUM, world);
+  constexpr size_t N = sizeof(KineticSums) / sizeof(double);
+  reduce(MPI_SUM, &here.force_power, &sums.force_power, N, world);
   here = KineticSums();
   alpha = multipliers(mode, sums);
   of_all = alpha;

@@ -327,7 +327,7 @@ void Ownership::sum_large(std::vector<Load> &column)
     part = std::copy_n(column[ibody].force, 3, part);
     part = std::copy_n(column[ibody].torque_space, 3, part);
   }
-  MPI_Allreduce(parts.data(), sums.data(), (int) parts.size(), MPI_DOUBLE, MPI_SUM, world);
+  reduce(MPI_SUM, parts.data(), sums.data(), parts.size(), world);
   const double *sum = sums.data();
   for (const int ibody : bodies.large) {
     std::copy_n(sum, 3, column[ibody].force);

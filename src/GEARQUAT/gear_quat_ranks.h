@@ -3,7 +3,10 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Data combined over all ranks.  Every call is collective. */
+/* Data combined over all ranks.  Every call is collective.
+
+   In test builds, with GEARQUAT_CHECKS, every call counts, and World compares the count and the
+   lines of all calls over the ranks.  A run ends if ranks are in different calls. */
 
 #ifndef LMP_GEAR_QUAT_RANKS_H
 #define LMP_GEAR_QUAT_RANKS_H
@@ -22,20 +25,73 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Reduces N numbers (int, tagint, bigint or double) over all ranks, element by element.
-template <typename T, size_t N> std::array<T, N> over_ranks(MPI_Op op, T (&here)[N], MPI_Comm world)
+#ifdef GEARQUAT_CHECKS
+/// The collective calls of this rank: how many, and the sum of their lines.
+struct Calls {
+  bigint count = 0, lines = 0;
+
+  void note(int line)
+  {
+    ++count;
+    lines += line;
+  }
+  void compare(MPI_Comm world, const char *file, int line)
+  {
+    note(line);
+    bigint here[4] = {count, -count, lines, -lines}, least[4];
+    MPI_Allreduce(here, least, 4, MPI_LMP_BIGINT, MPI_MIN, world);
+    if (least[0] == -least[1] && least[2] == -least[3]) return;
+    fprintf(stderr,
+            "ERROR: Fix gear/quat: ranks differ in their collective calls; one is at %s:%d\n", file,
+            line);
+    MPI_Abort(world, 1);
+  }
+};
+inline Calls calls;
+
+/// All ranks, at a collective call.
+struct World {
+  MPI_Comm comm;
+  World(MPI_Comm comm, const char *file = __builtin_FILE(), int line = __builtin_LINE()) :
+      comm(comm)
+  {
+    calls.compare(comm, file, line);
+  }
+};
+inline void note_call(int line = __builtin_LINE())
+{
+  calls.note(line);
+}
+#else
+struct World {
+  MPI_Comm comm;
+  World(MPI_Comm comm) : comm(comm) {}
+};
+inline void note_call() {}
+#endif
+
+/// In test builds, ends the run if ranks have made different calls.
+inline void compare_calls(World /*world*/) {}
+
+/// Reduces numbers (int, tagint, bigint or double) over all ranks, element by element.
+template <typename T> void reduce(MPI_Op op, T *here, T *all, size_t n, World world)
 {
   static_assert(std::is_arithmetic<T>::value);
-  std::array<T, N> all;
   const MPI_Datatype type = std::is_same<T, double>::value ? MPI_DOUBLE
       : std::is_same<T, int>::value                        ? MPI_INT
                                                            : MPI_LMP_BIGINT;
-  MPI_Allreduce(here, all.data(), (int) N, type, op, world);
+  MPI_Allreduce(here, all, (int) n, type, op, world.comm);
+}
+
+template <typename T, size_t N> std::array<T, N> over_ranks(MPI_Op op, T (&here)[N], World world)
+{
+  std::array<T, N> all;
+  reduce(op, here, all.data(), N, world);
   return all;
 }
 
 /// One number.
-template <typename T> T over_ranks(MPI_Op op, T here, MPI_Comm world)
+template <typename T> T over_ranks(MPI_Op op, T here, World world)
 {
   T one[1] = {here};
   return over_ranks(op, one, world)[0];
@@ -45,6 +101,7 @@ template <typename T> T over_ranks(MPI_Op op, T here, MPI_Comm world)
 template <typename T>
 std::vector<T> send_to_ranks(Comm *comm, std::vector<T> items, std::vector<int> ranks)
 {
+  note_call();
   constexpr int IRREGULAR = 0, UNSORTED = 0;
   const int n = (int) items.size();
   std::vector<T> received;
@@ -62,12 +119,12 @@ std::vector<T> send_to_ranks(Comm *comm, std::vector<T> items, std::vector<int> 
 }
 
 /// Sends the text of one rank to all.
-inline std::string broadcast(std::string text, MPI_Comm world, int root)
+inline std::string broadcast(std::string text, World world, int root)
 {
   int size = (int) text.size();
-  MPI_Bcast(&size, 1, MPI_INT, root, world);
+  MPI_Bcast(&size, 1, MPI_INT, root, world.comm);
   text.resize(size);
-  MPI_Bcast(&text[0], size, MPI_CHAR, root, world);
+  MPI_Bcast(&text[0], size, MPI_CHAR, root, world.comm);
   return text;
 }
 
@@ -76,8 +133,9 @@ constexpr int EVERY_RANK = -1;
 /// Gathers the items of all ranks in the order of the ranks, on one rank (empty elsewhere) or on
 /// all.  T: without pointers, since it is sent as bytes.
 template <typename T>
-std::vector<T> gather(std::vector<T> &mine, MPI_Comm world, int root = EVERY_RANK)
+std::vector<T> gather(std::vector<T> &mine, World all_ranks, int root = EVERY_RANK)
 {
+  const MPI_Comm world = all_ranks.comm;
   int here = (int) mine.size(), me, ranks;    // not const: required by LAMMPS' MPI stubs
   MPI_Comm_rank(world, &me);
   MPI_Comm_size(world, &ranks);
@@ -99,7 +157,7 @@ std::vector<T> gather(std::vector<T> &mine, MPI_Comm world, int root = EVERY_RAN
 
 /// The gathered items, sorted.
 template <typename T, class Before = std::less<T>>
-std::vector<T> gather_sorted(std::vector<T> &mine, MPI_Comm world, Before before = Before(),
+std::vector<T> gather_sorted(std::vector<T> &mine, World world, Before before = Before(),
                              int root = EVERY_RANK)
 {
   std::vector<T> all = gather(mine, world, root);

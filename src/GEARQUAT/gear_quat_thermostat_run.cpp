@@ -296,6 +296,7 @@ void Thermostat::watch_friction(double h)
   const double part = part_of_limit(h);
   if (warned_friction || part < SAFE) return;
   warned_friction = true;
+  const double translation = element(T_TRANSLATION), rotation = element(T_ROTATION);
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat temp: in step {} the thermostat has a friction of {:.2g}/step, "
@@ -303,7 +304,7 @@ void Thermostat::watch_friction(double h)
                    "rotation are {:.4g} and {:.4g}, the target is {:.4g}; use a longer damping "
                    "time than {:g}",
                    update->ntimestep, std::fabs(h) * strongest_friction(), 100.0 * part,
-                   element(T_TRANSLATION), element(T_ROTATION), element(TARGET), words.damp);
+                   translation, rotation, element(TARGET), words.damp);
 }
 
 /* ----------------------------------------------------------------------
