@@ -164,7 +164,7 @@ double Assembly::unit_of(int part, double bound) const
 Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extended,
                    const std::vector<tagint> &ids) :
     Pointers(lmp),
-    given(given), extended(extended), parts(comm, ids.data(), (int) ids.size()),
+    given(given), extended(extended), parts(comm, world, ids.data(), (int) ids.size()),
     made(parts.number(), Made())
 {
   double steepest = 0.0;
@@ -246,7 +246,7 @@ void Assembly::gather_small()
       ranks.push_back((int) (parts.key(part) % comm->nprocs));
     }
   }
-  messages = send_to_ranks(comm, std::move(messages), std::move(ranks));
+  messages = send_to_ranks(comm, world, std::move(messages), std::move(ranks));
   std::sort(messages.begin(), messages.end(), [](const Message &a, const Message &b) {
     return a.key != b.key  ? a.key < b.key
         : a.rank != b.rank ? a.rank < b.rank
@@ -265,7 +265,7 @@ void Assembly::gather_small()
       }
     }
   }
-  for (const auto &reply : send_to_ranks(comm, std::move(replies), std::move(ranks)))
+  for (const auto &reply : send_to_ranks(comm, world, std::move(replies), std::move(ranks)))
     whole[reply.part].push_back(reply.site);
   for (auto &one : whole)
     std::sort(one.second.begin(), one.second.end(), [](const Site &a, const Site &b) {

@@ -265,7 +265,7 @@ void Assembly::warn_of_clumps() const
   });
   if (!over_ranks(MPI_MAX, here, world)) return;
 
-  const Parts suspects(comm, wide.data(), atom->nlocal);
+  const Parts suspects(comm, world, wide.data(), atom->nlocal);
   std::vector<Clumps> clumps(suspects.number());
   for (int suspect = 0; suspect < suspects.number(); ++suspect) {
     const int part = parts.find(suspects.key(suspect));

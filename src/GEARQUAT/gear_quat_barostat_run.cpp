@@ -36,6 +36,7 @@ using namespace GearQuat;
 /// Refuses forces without a virial, and positions that do not follow the box.
 void Barostat::refuse_scene() const
 {
+  virial.check_compute();
   bigint here = 0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here += bodies.body_at(ibody).natoms;
   const bigint others = atom->natoms - over_ranks(MPI_SUM, here, world);

@@ -131,7 +131,8 @@ void AtomsOfBody::merge(const AtomsOfBody &other)
 
 Comparer::Comparer(LAMMPS *lmp, const Bodies &bodies, const Ownership &ownership, int groupbit) :
     Pointers(lmp), bodies(bodies), ownership(ownership),
-    parts(lmp->comm, ownership.owner_tags().data(), lmp->atom->nlocal), counts(parts.number())
+    parts(lmp->comm, lmp->world, ownership.owner_tags().data(), lmp->atom->nlocal),
+    counts(parts.number())
 {
   for (int part = 0; part < parts.number(); ++part)
     for (const int i : parts.atoms(part)) count_atom(i, groupbit, counts[part]);

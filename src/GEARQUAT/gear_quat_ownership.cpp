@@ -270,6 +270,7 @@ void Ownership::share_owners()
     if (owner >= atom->nlocal) sought[owner] = 1.0;
   }
   labels = sought.data();
+  compare_calls(world);
   comm->reverse_comm(fix, 1);
   labels = nullptr;
   for (int i = 0; i < atom->nlocal; ++i)
@@ -281,6 +282,7 @@ void Ownership::share_owners()
 void Ownership::tell_ghosts()
 {
   message = Message::GHOSTS;
+  compare_calls(world);
   comm->forward_comm(fix);
 }
 
@@ -356,6 +358,7 @@ void Ownership::spread_labels(std::vector<double> &label)
 {
   labels = label.data();
   message = Message::LABELS;
+  compare_calls(world);
   comm->forward_comm(fix, 1);
   labels = nullptr;
 }
@@ -374,6 +377,7 @@ void Ownership::spread_moved()
 {
   if (!any_ghosts) return;
   message = Message::STATES;
+  compare_calls(world);
   comm->forward_comm(fix, STATE_SIZE);
   bodies.update_frames(bodies.ghost_tops);
 }
@@ -381,6 +385,7 @@ void Ownership::spread_moved()
 void Ownership::sum(std::vector<Load> &column)
 {
   loads = column.data();
+  compare_calls(world);
   if (any_ghosts) comm->reverse_comm(fix, LOAD_SIZE);
   if (!bodies.large.empty()) sum_large(column);
 }
@@ -390,6 +395,7 @@ void Ownership::spread(std::vector<Load> &column)
   if (!any_ghosts) return;
   loads = column.data();
   message = Message::LOADS;
+  compare_calls(world);
   comm->forward_comm(fix, LOAD_SIZE);
 }
 

@@ -30,19 +30,15 @@ namespace LAMMPS_NS::GearQuat {
 struct Calls {
   bigint count = 0, lines = 0;
 
-  void note(int line)
+  void compare(MPI_Comm world, const char *file, int line)
   {
     ++count;
     lines += line;
-  }
-  void compare(MPI_Comm world, const char *file, int line)
-  {
-    note(line);
     bigint here[4] = {count, -count, lines, -lines}, least[4];
     MPI_Allreduce(here, least, 4, MPI_LMP_BIGINT, MPI_MIN, world);
     if (least[0] == -least[1] && least[2] == -least[3]) return;
     fprintf(stderr,
-            "ERROR: Fix gear/quat: ranks differ in their collective calls; one is at %s:%d\n", file,
+            "ERROR: Fix gear/quat: ranks make different collective calls; one is at %s:%d\n", file,
             line);
     MPI_Abort(world, 1);
   }
@@ -58,16 +54,11 @@ struct World {
     calls.compare(comm, file, line);
   }
 };
-inline void note_call(int line = __builtin_LINE())
-{
-  calls.note(line);
-}
 #else
 struct World {
   MPI_Comm comm;
   World(MPI_Comm comm) : comm(comm) {}
 };
-inline void note_call() {}
 #endif
 
 /// In test builds, ends the run if ranks have made different calls.
@@ -99,9 +90,9 @@ template <typename T> T over_ranks(MPI_Op op, T here, World world)
 
 /// Sends each item to its rank, and returns the items received.
 template <typename T>
-std::vector<T> send_to_ranks(Comm *comm, std::vector<T> items, std::vector<int> ranks)
+std::vector<T> send_to_ranks(Comm *comm, World /*world*/, std::vector<T> items,
+                             std::vector<int> ranks)
 {
-  note_call();
   constexpr int IRREGULAR = 0, UNSORTED = 0;
   const int n = (int) items.size();
   std::vector<T> received;
@@ -173,7 +164,7 @@ class Parts {
  public:
   /// key: of n owned atoms, positive and the same for all atoms of a body, 0 for an atom in none.
   /// Collective.
-  Parts(Comm *comm, const tagint *key, int n) : comm(comm)
+  Parts(Comm *comm, MPI_Comm world, const tagint *key, int n) : comm(comm), world(world)
   {
     atom.reserve(n - std::count(key, key + n, 0));
     for (int i = 0; i < n; ++i)
@@ -233,6 +224,7 @@ class Parts {
 
  private:
   Comm *comm;
+  MPI_Comm world;
   std::vector<int> atom, start;    ///< atoms by parts, and where each part starts
   std::vector<tagint> keys;
   std::vector<int> shared;    ///< parts of bodies that are on other ranks too
@@ -269,7 +261,7 @@ class Parts {
       messages.push_back({keys[part], comm->me, part, items[part]});
       ranks.push_back((int) (keys[part] % comm->nprocs));
     }
-    messages = send_to_ranks(comm, std::move(messages), std::move(ranks));
+    messages = send_to_ranks(comm, world, std::move(messages), std::move(ranks));
     std::sort(messages.begin(), messages.end(), [](const Message &a, const Message &b) {
       return a.key != b.key ? a.key < b.key : a.rank < b.rank;
     });
@@ -281,7 +273,7 @@ class Parts {
       for (size_t i = first; i < last; ++i) messages[i].item = whole;
     }
     for (const auto &message : messages) ranks.push_back(message.rank);
-    for (const auto &message : send_to_ranks(comm, std::move(messages), std::move(ranks)))
+    for (const auto &message : send_to_ranks(comm, world, std::move(messages), std::move(ranks)))
       items[message.part] = message.item;
   }
 };

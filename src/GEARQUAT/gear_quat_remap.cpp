@@ -216,11 +216,11 @@ bool Ownership::follow_box()
     mine.push_back(one);
     ranks.push_back((int) (one.owner % comm->nprocs));
   }
-  std::vector<Member> all = send_to_ranks(comm, mine, ranks);
+  std::vector<Member> all = send_to_ranks(comm, world, mine, ranks);
   bigint remapped = 0;
   tagint deformed = 0;
   const auto orders = orders_to(domain, last_box.data(), all, ranks, remapped, deformed);
-  for (const Order &order : send_to_ranks(comm, orders, ranks)) {
+  for (const Order &order : send_to_ranks(comm, world, orders, ranks)) {
     for (int k = 0; k < 3; ++k) atom->x[order.local][k] += order.way[k];
     if (order.owns) std::copy_n(order.center, 3, bodies.change_state(owned_by(order.local)).center);
   }

@@ -211,7 +211,7 @@ void GearQuat::warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Argu
   if (!atom->molecule_flag) return;
   std::vector<tagint> molecule(atom->molecule, atom->molecule + atom->nlocal);
   for (auto &id : molecule) id = std::max(id, (tagint) 0);
-  const Parts parts(lmp->comm, molecule.data(), atom->nlocal);
+  const Parts parts(lmp->comm, lmp->world, molecule.data(), atom->nlocal);
   std::vector<Membership> memberships(parts.number(), {0, 0, 0, lmp->comm->me});
   for (int part = 0; part < parts.number(); ++part)
     for (const int i : parts.atoms(part)) {

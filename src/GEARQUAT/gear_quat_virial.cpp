@@ -13,6 +13,7 @@
 #include "compute.h"
 #include "dihedral.h"
 #include "domain.h"
+#include "error.h"
 #include "fix.h"
 #include "force.h"
 #include "improper.h"
@@ -53,6 +54,15 @@ MolecularVirial::~MolecularVirial()
 Compute *MolecularVirial::own() const
 {
   return modify->get_compute_by_id(id);
+}
+
+void MolecularVirial::check_compute() const
+{
+  if (own() && own()->pressflag) return;
+  error->all(FLERR,
+             "Fix gear/quat: compute {}, with which the fix asks LAMMPS for the virial, was deleted "
+             "or replaced; leave it, or define the fix again",
+             id);
 }
 
 void MolecularVirial::request(bigint step) const

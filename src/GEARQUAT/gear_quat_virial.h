@@ -31,6 +31,8 @@ class MolecularVirial : protected Pointers {
   MolecularVirial(LAMMPS *lmp, const Fix *fix, const Sites &sites);
   ~MolecularVirial() override;
 
+  /// Ends the run if the compute was deleted or replaced since the last run.
+  void check_compute() const;
   /// LAMMPS will compute V in that step.
   void request(bigint step) const;
   /// Computes it from V and the latest forces f on atoms.  energy: of all bodies, approximate.

@@ -5,7 +5,7 @@ Unsupported settings are in test_bad_input.py; change_box between runs is in tes
 
 import numpy as np
 import pytest
-from pressed import MASSES, distances, ends, pressed, trimers
+from pressed import MASSES, REPULSIVE, distances, ends, pressed, trimers
 
 TILTED = np.eye(3)
 SOLVENT = """create_atoms 2 random 40 4711 NULL overlap 0.7 maxtry 500
@@ -54,6 +54,16 @@ def driven(after, tilted, fix="gear/quat molecule", dt=0.001, steps=400, **setti
 def data(tmp_path):
     trimers(tmp_path / "data.tilted", spacing=1.5, change=TILTED)
     return trimers(tmp_path / "data.trimers", spacing=1.5)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_what_a_run_has_used_may_be_deleted(lmp_tree, ranks):
+    before = "variable body atom mol\ngroup some molecule <= 4\ngroup others subtract all some\n"
+    delete = "unfix d\nvariable body delete\ngroup others delete\nrun 5\nminimize 0 1e-3 2 10\nrun 5"
+    after = "fix d all deform 1 x erate 0.3"
+    settings = dict(before=before, run=f"run 5\n{delete}", pair=REPULSIVE)
+    deck = driven(after, False, fix="gear/quat custom v_body", **settings)
+    assert lmp_tree.succeed(deck, ranks=ranks).thermo[1]["Step"][-1] == 10
 
 
 THERMOSTATS = ["", "temp 0.7 0.9 0.8 thermostat separate"]

@@ -234,6 +234,19 @@ def test_a_fix_that_comes_again_has_lost_its_rate(lmp_tree):
     assert largest_change(after) < 1e-6
 
 
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("other", ["", "compute move_virial all temp\n"])
+def test_a_deleted_compute(lmp_tree, other, ranks):
+    deck = pressed(MODES["NPT"], run=f"run 5\nuncompute move_virial\n{other}run 5")
+    message = "compute move_virial, with which the fix asks LAMMPS for the virial, was deleted or replaced"
+    lmp_tree.refuse(deck, message, ranks=ranks)
+
+
+def test_the_fix_again_after_its_compute_was_deleted(lmp_tree):
+    again = f"unfix move\nfix move all gear/quat molecule {MODES['NPT']}\n"
+    lmp_tree.succeed(pressed(MODES["NPT"], run=f"run 5\nuncompute move_virial\n{again}run 5"))
+
+
 def test_forces_that_reach_far(lmp_tree):
     """Water with PPPM and a tail correction: order of the conserved energy in each formulation."""
     from pressed import scaled_water
