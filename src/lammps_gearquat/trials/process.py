@@ -149,7 +149,7 @@ def watch_energies(lammps, lines, partial, ids, unit):
     commands += [f"variable {name} equal {formula}" for name, formula in zip(ENERGIES, formulas)]
     names = " ".join(f"v_{name}" for name in ENERGIES)
     # LAMMPS computes the quantities in the formulas only if they are printed themselves
-    lammps.commands_list([*commands, f"thermo_style custom step econserve {names}", "thermo_modify norm no"])
+    lammps.commands_list([*commands, f"thermo_style custom step pe ecouple {names}", "thermo_modify norm no"])
 
 
 def _energies(lammps):

@@ -62,8 +62,10 @@ def cost_text(deck, costs):
 def _cost_cells(costs, row):
     price, cells = row.choice, [f"{row.error:.1e}"]
     if price is None:
-        known = "is not reached" if row.error > costs.doubt_limit else "cannot be judged"
-        known = "drifts" if any(found.refused for found in costs.drifts.values()) and row.error > costs.doubt_limit else known
+        if row.error <= costs.doubt_limit:
+            return cells + ["cannot be judged", *"-----"]
+        refused = _refused(costs).values()
+        known = "drifts" if any(not found.fails for found in refused) else "ends with an error" if refused else "is not reached"
         return cells + [known, *"-----"]
     speed_up = "-"
     if row.own and not row.keep:
@@ -90,7 +92,7 @@ def _drift(deck, found):
 
 def _drift_lines(deck, costs):
     """Notes on steps rejected for energy drift, warnings of possible drift, and how to measure it."""
-    lines, doubtful = [], []
+    lines, doubtful, failures = [], [], {}
     recommended = {row.recommended for row in costs.rows if row.choice}
     for (keywords, dt), found in costs.drifts.items():
         name = f"{named(keywords)}, timestep {dt:g}"
@@ -98,17 +100,15 @@ def _drift_lines(deck, costs):
         if found.drifts:
             lines.append(f"Not recommended: {name}, because the energy drifts by {measured}.")
         elif found.failure:
-            beginning = "Not recommended" if found.fails else "WARNING"
-            lines += [
-                f"{beginning}: {name}: a run that was longer than the trials ended with an error:",
-                f"    {found.failure}",
-            ]
+            failures.setdefault(("Not recommended" if found.fails else "WARNING", found.failure), []).append(name)
         elif not found.holds and (keywords, dt) in recommended:
             doubtful.append(keywords)
             lines += [
                 f"WARNING: {name}: whether the energy drifts in long runs has not been measured:",
                 f"    {found.reason or f'{measured} do not tell whether it is above {found.bound:g}'}.",
             ]
+    for (beginning, failure), names in failures.items():
+        lines += [f"{beginning}: {'; '.join(names)}: a run that was longer than the trials ended with an error:", f"    {failure}"]
     return ["", *lines, *_how_to_measure(deck, doubtful)] if lines else []
 
 
@@ -117,18 +117,16 @@ def _how_to_measure(deck, doubtful):
     if not doubtful:
         return []
     energy, kinetic, rows = conserved(deck.fix_lines_of(next(filter(None, doubtful), None)), deck.partial)
-    if energy != "econserve":
-        rows, energy = [*rows, f"variable conserved equal {energy}"], "v_conserved"
-    if kinetic != "ke":
-        rows, kinetic = [*rows, f"variable kinetic equal {kinetic}"], "v_kinetic"
-    columns = " ".join(dict.fromkeys(["econserve", energy, kinetic]))  # the others require the first column
-    rows += [f"thermo_style custom step time {columns}", "thermo_modify norm no format float %.15g", "thermo 100"]
+    rows += [f"variable conserved equal {energy}", f"variable kinetic equal {kinetic}"]
+    # LAMMPS computes the terms of the sum only if they are printed themselves
+    rows += ["thermo_style custom step time pe ecouple v_conserved v_kinetic", "thermo_modify norm no format float %.15g"]
+    rows += ["thermo 100"]
     time = deck.time_unit or "time unit"
     long_enough = _quantity(drift.LONGEST * drift.nanosecond(deck), deck.time_unit)
     return [
         f"To measure a drift, write these lines below its fix, and run {long_enough} or more:",
         *(f"    {row}" for row in rows),
-        f"The slope of {energy} against time, divided by twice the mean of {kinetic}, is the drift in kT per {time} and",
+        f"The slope of v_conserved against time, divided by twice the mean of v_kinetic, is the drift in kT per {time} and",
         f"degree of freedom, and {rounded(drift.nanosecond(deck), 6)} times that the one in {_drift_unit(deck)}.",
     ]
 
@@ -201,10 +199,10 @@ def _nothing_holds(deck, costs, rows):
     if not rows or not refused:
         return []
     errors = ", ".join(f"{row.error:.1e}" for row in rows)
-    lines = [
-        f"Nothing is recommended for an error of {errors}: no step that reaches it has a drift below"
-        f" {costs.bound:g} {_drift_unit(deck)} (--drift)."
-    ]
+    kept = f"has a drift below {costs.bound:g} {_drift_unit(deck)} (--drift)"
+    if all(found.fails for found in refused.values()):
+        kept = "was kept up in a longer run without an error"
+    lines = [f"Nothing is recommended for an error of {errors}: no step that reaches it {kept}."]
     known = {pair: found for pair, found in costs.drifts.items() if found.known}
     if known:
         (keywords, dt), least = min(known.items(), key=lambda item: abs(item[1].rate))

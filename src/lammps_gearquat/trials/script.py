@@ -215,15 +215,15 @@ class FixLine:
 def conserved(lines, partial=False):
     """Energies while these FixLines move the bodies, as formulas of LAMMPS: (conserved, kinetic, commands before them).
 
-    ``partial``: the kinetic energy of atoms differs from the kinetic energy of the bodies, and only bodies move.
+    They need no temperature, which LAMMPS refuses if more degrees of freedom are subtracted than counted.  ``partial``:
+    the kinetic energy of atoms differs from the kinetic energy of the bodies, and only bodies move.
     """
     own = [line for line in lines if line.style == "gear/quat"]
-    heats = [f"f_{line.id}[9]" for line in own if line.isokinetic]  # which econserve does not include
+    heats = [f"f_{line.id}[9]" for line in own if line.isokinetic]  # which ecouple does not include
     commands = [f"fix_modify {line.id} energy yes" for line in own if not line.has_chains]
-    if not partial:
-        return "+".join(["econserve", *heats]), "ke", commands
-    *parts, more = kinetic_parts(lines)
-    return "+".join(["pe", "ecouple", *parts, *heats]), "+".join(parts), commands + more
+    *parts, more = kinetic_parts(lines) if partial else ("c_gearquat_ke", ["compute gearquat_ke all ke"])
+    kinetic = "+".join(parts)
+    return "+".join(["pe", "ecouple", kinetic, *heats]), kinetic, commands + more
 
 
 def kinetic_parts(lines):
