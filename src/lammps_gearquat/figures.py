@@ -66,12 +66,16 @@ def draw_cost(path, deck, costs):
 
 
 def _draw_prices(axis, name, costs):
-    """One panel; ``name`` is the field of a Point that is the cost."""
+    """One panel; ``name`` is the field of a Point that is the cost.
+
+    Times of trials that ran once are not drawn beside the shortest of several.
+    """
     methods = costs.points()
+    timings = [point.timings for points in methods.values() for point in points]
+    least = min(2, max(timings, default=1)) if name == "seconds" else 1
     for keywords, points in sorted(methods.items(), key=lambda item: _rank(item[0])):
-        x = [getattr(point, name) / costs.end for point in points]
-        look = _look(keywords, methods)
-        axis.loglog(x, [point.error for point in points], markersize=3, **look)
+        drawn = [(getattr(point, name) / costs.end, point.error) for point in points if point.timings >= least]
+        axis.loglog(*(np.transpose(drawn) if drawn else ([], [])), markersize=3, **_look(keywords, methods))
     chosen = [row for row in costs.rows if row.choice]
     axis.plot(
         [getattr(row.choice, name) / costs.end for row in chosen],
@@ -143,9 +147,7 @@ def draw_horizon(path, deck, horizon):
             axis.text(0.01, level, threshold, **note)
         axis.set_ylim(top=3 * max(axis.get_ylim()[1], horizon.parting[-1][0]))  # room for the last note
         axis.set_xlabel(named("time", deck.time_unit))
-        axis.set_ylabel(
-            named("difference of the two runs", ", ".join(filter(None, [deck.length_unit, "rad"])))
-        )
+        axis.set_ylabel(f"difference of the two runs ({deck.length_unit}, rad)")
         figure.legend(fontsize=8, loc="outside lower center", ncols=4)
 
 

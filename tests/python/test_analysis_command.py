@@ -149,7 +149,7 @@ def test_command_leaves_tables_and_pictures(water, tmp_path, jobs):
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
     # files of the earlier analysis that this analysis does not write were removed
     result = analyze(water / "water.dump", tmp_path, "--units", "real")
-    assert result.exit_code == 0 and "replaces the earlier one in" in result.output
+    assert result.exit_code == 0 and "replace the earlier ones in" in result.output
     assert not (tmp_path / "poses.csv").exists() and (tmp_path / "averages.csv").exists()
     few = tmp_path / "few"
     result = analyze(water / "water.dump", few, "--units", "real", "--frames", ":2")
@@ -178,12 +178,12 @@ def test_an_analysis_of_other_settings_is_kept(tmp_path, arguments, text):
     assert analyze(path, out).exit_code == 0
     before = files(tmp_path)
     result = analyze(path, out, *arguments)
-    assert result.exit_code == 1 and f"out has the analysis of other settings {text}: another --out is" in result.output
+    assert result.exit_code == 1 and f"out has results of other settings {text}: another --out is" in result.output
     assert files(tmp_path) == before
     assert analyze(path, tmp_path / "other", *arguments).exit_code == 0  # the advice
     path.write_text(path.read_text() + dumps.frame(8, motion.rows(8.0)))
     result = analyze(path, out, "--csv")
-    assert result.exit_code == 0 and "replaces the earlier one in" in result.output
+    assert result.exit_code == 0 and "replace the earlier ones in" in result.output
     assert len(columns(out / "totals.csv")) == 9
 
 
@@ -200,7 +200,7 @@ def test_an_analysis_of_another_dump_is_kept(tmp_path):
     assert "(the dump was rewritten): another --out is required" in analyze(path, out).output
     assert files(out) == before
     (out / "settings.json").unlink()
-    assert "out has bodies.csv of another analysis: another --out" in analyze(path, out).output
+    assert "out has bodies.csv of unknown settings: another --out" in analyze(path, out).output
 
 
 @pytest.mark.filterwarnings("ignore:::MDAnalysis")

@@ -1,5 +1,6 @@
 """Early ends of trials: bodies that leave the box, Ctrl-C, signals; and their lines in a batch log."""
 
+import json
 import os
 import re
 import signal
@@ -40,7 +41,7 @@ def test_bodies_that_leave_the_box(make_deck, tmp_path, style):
     assert "molecules left the box, whose boundary is fixed" in found.output and "Last command" not in found.output
     words[4] = said[3]
     assert runs(horizon_command, make_deck(**SMALL, **FOR_GEAR), *words).exit_code == 0
-    words[4] = 40
+    words[4:] = [40, "--out", tmp_path / "other"]
     assert runs(horizon_command, make_deck(**SMALL, **FOR_GEAR, **{WALLS: FREE}), *words).exit_code == 0
 
 
@@ -136,6 +137,33 @@ def test_a_caller_that_is_killed_leaves_no_lammps(make_deck, tmp_path, ranks):
         caller.kill()
     assert begun
     wait_until(lambda: not workers(tmp_path), 20.0)
+
+
+# --- folders ------------------------------------------------------------------------------------------
+def test_results_of_another_deck_and_of_other_options_are_kept(make_deck, tmp_path):
+    path, out = make_deck(), tmp_path / "out"
+    words = ["--time", 0.4, "--out", out]
+    assert runs(horizon_command, path, *words).exit_code == 0
+    settings = json.loads((out / "settings.json").read_text())
+    assert (settings["deck"], settings["time"]) == (str(path), 0.4)
+    assert "by too little to tell" in (out / "growth.csv").read_text()
+    before = {file: file.read_bytes() for file in out.iterdir()}
+
+    def refused(command, path, *words):
+        found = runs(command, path, *words)
+        assert found.exit_code == 1 and {file: file.read_bytes() for file in out.iterdir()} == before
+        return found.output
+
+    other = tmp_path / "in.other"
+    other.write_text(path.read_text())
+    assert "out has results of other settings (the deck): another --out is required" in refused(horizon_command, other, *words)
+    assert "settings (--var, --threshold): another" in refused(horizon_command, path, *words, "--var", "k2", "1", "--threshold", 1)
+    assert "out has results of other settings (" in refused(cost_command, path, *words)
+    again = runs(horizon_command, path, *words)
+    assert again.exit_code == 0 and f"These results replace the earlier ones in {out}." in again.output
+    path.write_text(path.read_text() + "# changed\n")
+    before = {file: file.read_bytes() for file in out.iterdir()}
+    assert "settings (the deck was rewritten): another" in refused(horizon_command, path, *words)
 
 
 # --- progress -----------------------------------------------------------------------------------------

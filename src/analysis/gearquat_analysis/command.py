@@ -134,9 +134,7 @@ def analyze(dump, out, near, radius, frames, rdf, converted, wrap, as_csv, follo
     if converted:
         folder.require_free(written_by(converted))
     poses = _run(dump, out, frames, converted, options)
-    if folder.replaced:
-        cloup.echo(f"This analysis replaces the earlier one in {out}.")
-    folder.fill()
+    folder.fill(cloup.echo)
     report.write_bodies(out / "bodies.csv", poses)
     totals = report.write_totals(out / "totals.csv", poses)
     pictures.draw_totals(poses, totals, out / "totals.png")

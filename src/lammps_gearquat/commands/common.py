@@ -8,7 +8,10 @@ from time import monotonic
 
 import cloup
 
+from gearquat_analysis.folder import Folder
 from gearquat_analysis.options import COUNT, FILE, progress_bar
+
+from ..trials.script import DeckError
 
 #: seconds between two lines of progress where there is no terminal
 EVERY = 60.0
@@ -63,6 +66,15 @@ def deck_options(function):
         return function(scene={**scene, "which": which, "ranks": ranks}, **rest)
 
     return collect
+
+
+def results_folder(out, scene, options, names, **more):
+    """Folder for the files ``names`` with the results of a scene of ``deck_options``.  Raises DeckError if it has others."""
+    reading = {"var": scene["variables"], "without": scene["without"], "run": scene["which"], "ranks": scene["ranks"]}
+    try:
+        return Folder(out, scene["path"], reading | options, names, "deck", more)
+    except ValueError as error:
+        raise DeckError(str(error)) from error
 
 
 def announce(path, progress):

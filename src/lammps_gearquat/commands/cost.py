@@ -9,12 +9,14 @@ from gearquat_analysis.options import COUNT, POSITIVE, command, failing_clearly,
 from ..launch import LammpsError
 from ..trials import BOUND, NORMS
 from ..trials.script import DeckError, pairs
-from .common import announce, deck_options, ending_cleanly, shown_progress
+from .common import announce, deck_options, ending_cleanly, results_folder, shown_progress
+
+LEAVES = ("cost.csv", "trials.csv", "cost.png")
 
 
 @command(
     "gearquat cost examples/water/in.water --var method rigid --budget 30",
-    "gearquat cost examples/case1/in.case1 --error 1e-3 --error 1e-6 --time 20",
+    "gearquat cost examples/case1/in.case1 --error 1e-3 --error 1e-6 --time 20 --out case1",
 )
 @deck_options
 @cloup.option_group(
@@ -89,6 +91,8 @@ def cost(scene, errors, time, norm, bound, budget, timings, tries, out):
 
     for text in tries:
         pairs(text)
+    asked = {"error": errors, "of": norm, "time": time, "drift": bound, "try": tries}
+    folder = results_folder(out, scene, asked, LEAVES, budget=budget, timings=timings)
     bar = shown_progress(total=round(budget), bar_format="{l_bar}{bar}| {elapsed}")
     with ending_cleanly(out), bar as progress:
         clock = trials.Budget(budget, progress, begin)
@@ -96,7 +100,7 @@ def cost(scene, errors, time, norm, bound, budget, timings, tries, out):
         say = announce(scene["path"], progress)
         with Deck(**scene, say=say, on_wait=clock.spent, timeout=trials.SHARE_BEFORE * budget) as deck:
             answer = trials.measure(deck, clock, errors, time, timings, NORMS.index(norm), tries, bound)
-    out.mkdir(parents=True, exist_ok=True)
+    folder.fill(cloup.echo)
     if isinstance(answer, sampling.Sampling):
         sampling_report.write(out, answer)
         figures.draw_drifts(out / "cost.png", deck, answer)

@@ -6,12 +6,14 @@ from gearquat_analysis.options import POSITIVE, command, failing_clearly, out_op
 
 from ..launch import LammpsError
 from ..trials.script import DeckError
-from .common import announce, deck_options, ending_cleanly, shown_progress
+from .common import announce, deck_options, ending_cleanly, results_folder, shown_progress
+
+LEAVES = ("horizon.csv", "parting.csv", "growth.csv", "horizon.png")
 
 
 @command(
     "gearquat horizon examples/case1/in.case1 --time 100",
-    "gearquat horizon examples/case2/in.case2 --var choices paper --time 500 --every 1 \\",
+    "gearquat horizon examples/case2/in.case2 --var choices paper --time 500 --every 1 --out case2 \\",
     '    --a "formulation first corrector gear values 5 momentum predicted" --b "formulation second"',
 )
 @deck_options
@@ -51,7 +53,7 @@ from .common import announce, deck_options, ending_cleanly, shown_progress
     ),
 )
 @cloup.option_group(
-    "Output", out_option("gearquat-horizon", "horizon.csv, parting.csv and horizon.png")
+    "Output", out_option("gearquat-horizon", "horizon.csv, parting.csv, growth.csv (the Lyapunov time) and horizon.png")
 )
 @failing_clearly(DeckError, LammpsError)
 def horizon(scene, time, thresholds, every, first, second, step_a, step_b, out):
@@ -66,12 +68,15 @@ def horizon(scene, time, thresholds, every, first, second, step_a, step_b, out):
     from ..trials.measure import Deck
 
     steps = (step_a, step_b)
+    asked = {"time": time, "threshold": thresholds, "every": every}
+    asked |= {"a": first, "b": second, "step_a": step_a, "step_b": step_b}
+    folder = results_folder(out, scene, asked, LEAVES)
     bar = shown_progress(total=1, unit="step", unit_scale=True, desc="following the deck")
     with ending_cleanly(out), bar as progress:
         say = announce(scene["path"], progress)
         with Deck(**scene, say=say, on_wait=progress.refresh) as deck:
             runs = trials.measure(deck, first, second, steps, time, every, thresholds, progress)
-    out.mkdir(parents=True, exist_ok=True)
+    folder.fill(cloup.echo)
     report.write_horizon(out, runs)
     figures.draw_horizon(out / "horizon.png", deck, runs)
     text = report.horizon_text(deck, runs)

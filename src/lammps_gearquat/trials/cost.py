@@ -118,7 +118,7 @@ class Costs:
             if evaluate.usable_step(trial.dt) >= limit.get(trial.keywords, math.inf):
                 continue
             cost = trial.steps, trial.fastest, errors[self.norm] + self.doubt
-            start = trial.start_evaluations, trial.fastest_start
+            start = trial.start_evaluations, trial.fastest_start, len(trial.seconds)
             point = evaluate.Point(trial.label, trial.dt, *cost, *start)
             points.setdefault(trial.keywords, []).append(point)
         return points
@@ -344,10 +344,12 @@ class Inquiry:
     def repeat(self, trials):
         """Run trials again, interleaved, until each has ``timings`` wall times."""
         trials = [trial for trial in trials if len(trial.seconds) < self.timings]
+        reserve = drift.SHARE * self.budget.seconds
         for _ in range(self.timings - 1):
+            # all of them or none: what was timed once, among other trials, is not compared with what was repeated
+            if 1.5 * sum(self.expected(trial.keywords, trial.steps) for trial in trials) > self.budget.left() - reserve:
+                return
             for trial in trials:
-                if not self.affords(trial.keywords, trial.steps, drift.SHARE * self.budget.seconds, runs=1.5):
-                    return
                 again = self.attempt(trial.keywords, float(trial.time[-1]), trial.steps)
                 if again:
                     trial.seconds += again.seconds

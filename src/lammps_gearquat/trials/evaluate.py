@@ -31,7 +31,7 @@ class Point:
     """A trial as a point of the work-precision diagram.
 
     ``evaluations`` of the forces and ``seconds`` count its steps; ``start_evaluations`` and ``start_seconds`` count
-    the start before the first step.
+    the start before the first step.  ``timings``: the number of runs of which ``seconds`` is the fastest.
     """
 
     method: str
@@ -41,6 +41,7 @@ class Point:
     error: float
     start_evaluations: int = 1
     start_seconds: float = 0.0
+    timings: int = 1
 
 
 @dataclass(frozen=True)
@@ -192,6 +193,10 @@ class Growth:
     def lyapunov_time(self):
         """Time in which the difference grows by e."""
         return 1.0 / self.rate
+
+    @property
+    def lyapunov_error(self):
+        return self.error / self.rate**2
 
     @property
     def factor(self):

@@ -181,7 +181,7 @@ class Deck:
         self.scene = Scene(parts)
         self.size = self.scene.size
         self.units = self._situation.units
-        self.time_unit, self.length_unit, *_ = UNITS[self.units]
+        self.time_unit, self.length_unit = UNITS[self.units].time, UNITS[self.units].length or "σ"
         #: True if atoms outside of bodies move
         self.others = sum(len(part.sites.ids) for part in parts) > len(self.scene.ids)
         self._continued = [part.continued for part in parts]

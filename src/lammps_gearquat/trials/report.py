@@ -262,8 +262,7 @@ def horizon_text(deck, horizon):
     if growth is None:
         lines.append(f"No Lyapunov time can be given: {horizon.no_growth}.")
     else:
-        spread = growth.lyapunov_time * growth.error / growth.rate
-        lyapunov = with_error(growth.lyapunov_time, spread, time)
+        lyapunov = with_error(growth.lyapunov_time, growth.lyapunov_error, time)
         lines.append(
             f"The Lyapunov time, in which the difference grows by a factor of e, is {lyapunov}. It was fitted from"
             f" t = {growth.begin:g} to {growth.end:g}, where the exponential grows by a factor of"
@@ -273,8 +272,12 @@ def horizon_text(deck, horizon):
 
 
 def write_horizon(folder, horizon):
-    """horizon.csv: the differences in time; parting.csv: when they pass each threshold."""
+    """horizon.csv: the differences in time; parting.csv: when they pass each threshold; growth.csv: the Lyapunov time, or
+    why there is none."""
     header = ["time", "largest_position", "rms_position", "largest_orientation"]
     rows = zip(horizon.time, horizon.largest, horizon.rms, horizon.angle)
     write_rows(folder / "horizon.csv", header, rows)
     write_rows(folder / "parting.csv", ["threshold", "time"], horizon.parting)
+    found = horizon.growth
+    row = [found.lyapunov_time, found.lyapunov_error, found.begin, found.end, ""] if found else [""] * 4 + [horizon.no_growth]
+    write_rows(folder / "growth.csv", ["lyapunov_time", "standard_error", "begin", "end", "why_none"], [row])
