@@ -187,6 +187,8 @@ void FixGearQuat::deform(int flag)
 
 void FixGearQuat::setup_pre_exchange()
 {
+  for (int i = 0; atom->vest && i < atom->nlocal; ++i)    // no fix extrapolates the first ones
+    if (ownership->in_body(i)) std::copy_n(atom->v[i], 3, atom->vest[i]);
   if (ownership->follow_box())
     motion->forget("Fix gear/quat: the box was remapped since the last run; histories are rebuilt");
   if (step->coupling && !step->coupling->knows_box())
@@ -293,12 +295,14 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
     motion_acts = other_fixes->any_taken() || motion->watches_contacts();
   }
   driven_box->begin_step();
+  sites->advance_densities(update->dt);
   step->begin(vflag, f);
 }
 
 void FixGearQuat::end_step(double **f, double **torque)
 {
   step->end(f, torque);
+  sites->advance_densities(update->dt);
   motion->look_at_vibrations();
   driven_box->end_step();
   if (box_change != NO_BOX_CHANGE) ownership->note_box();

@@ -129,6 +129,7 @@ Assembly::Site Assembly::site_of(int part, int i) const
   site.mass = mass_of(i);
   unwrapped(part, i, site.x);
   std::copy_n(atom->v[i], 3, site.v);
+  if (former) std::copy_n(former->arm[i].begin(), 3, site.former_arm);
   if (extended) extended->own_momenta(i, site.mass, site.inertia_space, site.momentum_space);
   return site;
 }
@@ -162,10 +163,10 @@ double Assembly::unit_of(int part, double bound) const
 ------------------------------------------------------------------------- */
 
 Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extended,
-                   const std::vector<tagint> &ids) :
+                   const std::vector<tagint> &ids, const Former *former) :
     Pointers(lmp),
-    given(given), extended(extended), parts(comm, world, ids.data(), (int) ids.size()),
-    made(parts.number(), Made())
+    given(given), extended(extended), former(former),
+    parts(comm, world, ids.data(), (int) ids.size()), made(parts.number(), Made())
 {
   double steepest = 0.0;
   for (int k = 0; k < 6; ++k) steepest = std::max(steepest, std::fabs(domain->h_inv[k]));
@@ -182,6 +183,7 @@ Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extend
     find_axes(part, momenta[part]);
   }
   orient_axes();
+  if (former) keep_axes();
   for (int part = 0; part < parts.number(); ++part) find_rotation(part, momenta[part]);
   report_faults();
   report_missing();

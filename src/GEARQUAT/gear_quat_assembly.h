@@ -22,6 +22,7 @@
 #include "pointers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <vector>
@@ -44,6 +45,12 @@ struct SiteSum {
   double value(double unit) const { return unit > 0.0 ? exact.value(unit) : plain; }
 };
 
+/// Poses of owned atoms in bodies that are made again.
+struct Former {
+  std::vector<std::array<double, 3>> arm;    ///< along the principal axes
+  std::vector<std::array<double, 9>> axes;
+};
+
 class Assembly : protected Pointers {
  public:
   /// A body with sites on this rank.
@@ -59,7 +66,7 @@ class Assembly : protected Pointers {
   /// points.  Massless bodies, and bodies in the infile that no atom belongs to, end the run on all
   /// ranks.  Collective.
   Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extended,
-           const std::vector<tagint> &ids);
+           const std::vector<tagint> &ids, const Former *former);
 
   /// The bodies with sites on this rank.
   const std::vector<Made> &bodies() const { return made; }
@@ -81,6 +88,7 @@ class Assembly : protected Pointers {
  private:
   const GivenBodies &given;
   const Extended *extended;
+  const Former *former;    ///< null for new bodies
   Parts parts;
   std::vector<Made> made;
   double certain;    ///< sites closer to each other than this have consistent image flags
@@ -94,6 +102,7 @@ class Assembly : protected Pointers {
     tagint tag;
     double mass;
     double x[3], v[3];                             ///< unwrapped
+    double former_arm[3];                          ///< along the axes of the former body
     double inertia_space[9], momentum_space[3];    ///< of the site about its own center
   };
   std::map<int, std::vector<Site>> whole;    ///< small bodies on several ranks: part -> all sites
@@ -184,6 +193,7 @@ class Assembly : protected Pointers {
   void find_axes(int part, const Momenta &momenta);
   void orient_axes();
   static void direct(double *axes, const Sides &sides);
+  void keep_axes();
   void find_rotation(int part, const Momenta &momenta);
   void check_place(int part, const Momenta &momenta);
   void check_moments(const Made &one);

@@ -10,6 +10,7 @@
 
 #include "gear_quat_images.h"
 #include "gear_quat_ranks.h"
+#include "gear_quat_shapes.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -26,6 +27,9 @@ using namespace GearQuat;
 static constexpr double ROUNDED = 1.0e-3;    // of a moment written with few digits
 static constexpr double HALF = 0.5;          // of a period
 static constexpr double NONE = std::numeric_limits<double>::infinity();
+
+static constexpr double SAME = 1.0e-9;        // of moments, relative
+static constexpr double UNMOVED = 1.0e-11;    // of coordinates, rounding
 
 static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: on neither side
 
@@ -127,6 +131,45 @@ void Assembly::direct(double *axes, const Sides &sides)
   const int last = first == third ? 1 : first ? 2 : 0;
   if (last != 1) turn(1);
   cross3(axes + 3 * ((last + 1) % 3), axes + 3 * ((last + 2) % 3), axes + 3 * last);
+}
+
+/// The axes of symmetric bodies are arbitrary: a body that has not turned keeps the former ones.
+void Assembly::keep_axes()
+{
+  const std::vector<Reach> moved = over_sites(Reach{0.0}, [this](Reach &all, int part) {
+    visit(part, [&](const Site &site) {
+      double arm[3], arm_body[3];
+      find_arm(site.x, made[part].state.center, arm);
+      to_body(former->axes[parts.atoms(part).first[0]].data(), arm, arm_body);
+      const double off = std::sqrt(distance2(arm_body, site.former_arm));
+      all.largest = std::max(all.largest, off);
+    });
+  });
+  const double box = domain->xprd + domain->yprd + domain->zprd;
+  for (int part = 0; part < parts.number(); ++part) {
+    Made &one = made[part];
+    double *moments = one.body.rigid.inertia;
+    const double largest = std::max({moments[0], moments[1], moments[2]});
+    const double same = SAME * largest;
+    const bool symmetric = std::fabs(moments[0] - moments[1]) < same ||
+        std::fabs(moments[1] - moments[2]) < same || std::fabs(moments[2] - moments[0]) < same;
+    if (!symmetric || moved[part].largest > UNMOVED * (box + length(one.state.center))) continue;
+    const double *axes = former->axes[parts.atoms(part).first[0]].data();
+    double tensor[9] = {}, now[3];
+    add_tensor(moments, one.axes, tensor);
+    bool principal = true;
+    for (int k = 0; k < 3; ++k) {
+      double turned[3];    // I times the k-th axis
+      to_body(tensor, axes + 3 * k, turned);
+      now[k] = dot3(turned, axes + 3 * k);
+      for (int l = 0; l < 3; ++l)
+        if (std::fabs(turned[l] - now[k] * axes[3 * k + l]) > same) principal = false;
+    }
+    if (!principal) continue;
+    std::copy_n(axes, 9, one.axes);
+    std::copy_n(now, 3, moments);
+    drop_vanishing_moments(moments);
+  }
 }
 
 /* ----------------------------------------------------------------------

@@ -11,9 +11,12 @@
 #include "atom.h"
 #include "domain.h"
 #include "error.h"
+#include "utils.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <string>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -31,7 +34,62 @@ Extended::Extended(LAMMPS *lmp, const Scheme &scheme) : Pointers(lmp), scheme(sc
 }
 
 /* ----------------------------------------------------------------------
-   the kind of an atom: lines and triangles have a radius too, so spheres are tested last
+   all per-atom data of LAMMPS, by their names in Atom::peratom; doc/src/fix_gear_quat.rst has the
+   same table by atom styles
+------------------------------------------------------------------------- */
+
+namespace {
+
+struct Data {
+  const char *names;
+  const char *refusal;    ///< null: bodies move these data, or a rigid motion leaves them unchanged
+};
+
+}    // namespace
+
+static constexpr Data DATA[] = {
+    // Sites sets these from the body, vest to the velocity at which forces are evaluated
+    {"x v image vest", nullptr},
+    // Extended sets these; ellipsoid, line and tri are indices of orientations
+    {"mu mu3 omega angmom quat ellipsoid line tri", nullptr},
+    // forces and other sums over neighbors, which every evaluation begins with zero
+    {"f torque heatflow fm fm_long erforce edpd_flux cc_flux drho desph duChem", nullptr},
+    // no direction
+    {"id type mask molecule molindex molatom nspecial special nspecial15 special15 id5p", nullptr},
+    {"num_bond bond_type bond_atom num_angle angle_type angle_atom1 angle_atom2 angle_atom3",
+     nullptr},
+    {"num_dihedral dihedral_type dihedral_atom1 dihedral_atom2 dihedral_atom3 dihedral_atom4",
+     nullptr},
+    {"num_improper improper_type improper_atom1 improper_atom2 improper_atom3 improper_atom4",
+     nullptr},
+    {"q rmass radius temperature espin eradius ervel rho esph cv rheo_status conductivity",
+     nullptr},
+    {"pressure viscosity dpdTheta uCond uMech uChem uCG uCGnew edpd_cv edpd_temp vest_temp cc",
+     nullptr},
+    {"area ed em epsilon curvature q_scaled", nullptr},
+    // a reference state, in which the distances of atoms count
+    {"vfrac s0 x0", nullptr},
+    {"body", nullptr},    // refused atom by atom
+    {"sp",
+     "has magnetic spins, which precess by themselves, and no fix would move those of bodies"},
+    {"contact_radius smd_data_9 smd_stress eff_plastic_strain eff_plastic_strain_rate damage",
+     "has stresses and deformations, which would have to turn with bodies"},
+};
+
+/// Data that a table does not know are refused, because they might have a direction.
+static std::string refusal_of(const std::string &name)
+{
+  for (const auto &row : DATA) {
+    const auto names = utils::split_words(row.names);
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      return row.refusal ? row.refusal : "";
+  }
+  return "has the per-atom data " + name + ", which this fix does not know";
+}
+
+/* ----------------------------------------------------------------------
+   the kind of an atom: lines and triangles have a radius too, so spheres are tested last; a point
+   with an orientation is a sphere of radius 0
 ------------------------------------------------------------------------- */
 
 int Extended::shape_of(int i) const
@@ -40,7 +98,7 @@ int Extended::shape_of(int i) const
   if (atom->line && atom->line[i] >= 0) return LINE;
   if (atom->tri && atom->tri[i] >= 0) return TRIANGLE;
   if (atom->body && atom->body[i] >= 0) return BODY;
-  if (atom->radius && atom->radius[i] > 0.0) return SPHERE;
+  if (atom->quat || (atom->radius && atom->radius[i] > 0.0)) return SPHERE;
   return POINT;
 }
 
@@ -53,9 +111,10 @@ Extended::Own Extended::own(int i, double mass) const
 {
   Own mine = {shape_of(i), has_dipole(i), {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}};
   if (mine.shape == SPHERE)
-    sphere_moments(mass, atom->radius[i], mine.moments);
+    sphere_moments(mass, atom->radius ? atom->radius[i] : 0.0, mine.moments);
   else if (mine.shape != POINT)
     read_bonus(i, mass, mine);
+  if (mine.shape == SPHERE && atom->quat) from_lammps(atom->quat[i], mine.q);
   return mine;
 }
 
@@ -86,6 +145,13 @@ template <class A> static int has_superellipsoids(const A *, long)
 
 void Extended::refuse(const std::vector<int> &atoms) const
 {
+  for (const auto &data : atom->peratom) {
+    if (!*static_cast<void **>(data.address)) continue;
+    const std::string refusal = refusal_of(data.name);
+    if (!refusal.empty())
+      error->all(FLERR, "Fix gear/quat: atom style {} {}; use an atom style without these data",
+                 atom->get_style(), refusal);
+  }
   const bool superellipsoids = has_superellipsoids(atom, 0) != 0;
   tagint here[3] = {0, 0, 0};    // of style body, superellipsoids, without header
   int shape = POINT;
@@ -157,8 +223,7 @@ void Extended::attach(int i, double mass, const double *q_body)
   const Own mine = own(i, mass);
   Record &record = records[i];
   record = Record();
-  record.shape = mine.shape;
-  record.dipole = mine.dipole;
+  record.kind = 2 * mine.shape + mine.dipole;
   std::copy_n(mine.moments, 3, record.moments);
   relative_orientation(q_body, mine.q, record.relative);
   if (mine.dipole) {
@@ -170,7 +235,7 @@ void Extended::attach(int i, double mass, const double *q_body)
 
 int Extended::freedoms(int i) const
 {
-  if (!kept || records[i].shape == POINT) return 0;
+  if (!kept || records[i].moments[2] == 0.0) return 0;
   return domain->dimension == 2 ? 1 : 3;
 }
 
@@ -180,9 +245,9 @@ int Extended::freedoms(int i) const
 
 void Extended::list(int i, int body)
 {
-  if (records[i].shape == POINT && !records[i].dipole) return;
+  if (records[i].kind == 0.0) return;
   sites.push_back({i, body, {0.0, 0.0, 0.0, 1.0}});
-  if (records[i].shape == TRIANGLE) find_corners(sites.back());
+  if (records[i].shape() == TRIANGLE) find_corners(sites.back());
 }
 
 Extended::Pose Extended::pose(const Record &record, int i, const BodyState &state) const
@@ -196,7 +261,7 @@ Extended::Pose Extended::pose(const Record &record, int i, const BodyState &stat
   own_angular_momentum(record.moments, own, made.omega, made.momentum);
   if (domain->dimension == 2) made.momentum[0] = made.momentum[1] = 0.0;
   std::fill_n(made.mu, 3, 0.0);
-  if (record.dipole) {    // with the length given by the atom style
+  if (record.dipole()) {    // with the length given by the atom style
     to_space(a, record.mu_body, made.mu);
     const double factor = atom->mu[i][3] / length(made.mu);
     for (double &component : made.mu) component *= factor;
@@ -210,13 +275,15 @@ void Extended::place(const std::vector<BodyState> &states, bool orientations, bo
     const int i = site.atom;
     const Record &record = records[i];
     const Pose made = pose(record, i, states[site.body]);
-    const bool by_momentum = record.shape == ELLIPSOID || record.shape == TRIANGLE;
+    const int shape = record.shape();
+    const bool by_momentum = shape == ELLIPSOID || shape == TRIANGLE;
     if (orientations) {
-      if (record.shape != POINT && record.shape != SPHERE) write_bonus(site, record.shape, made.q);
-      if (record.dipole) std::copy_n(made.mu, 3, atom->mu[i]);
+      if (shape == SPHERE && atom->quat) to_lammps(made.q, atom->quat[i]);
+      if (shape != POINT && shape != SPHERE) write_bonus(site, shape, made.q);
+      if (record.dipole()) std::copy_n(made.mu, 3, atom->mu[i]);
     }
     if (rates && by_momentum && atom->angmom) std::copy_n(made.momentum, 3, atom->angmom[i]);
-    if (rates && !by_momentum && record.shape != POINT && atom->omega)
+    if (rates && !by_momentum && shape != POINT && atom->omega)
       std::copy_n(made.omega, 3, atom->omega[i]);
   }
 }
@@ -244,15 +311,15 @@ bool Extended::match(int i, double mass, const BodyState &state) const
 {
   const Own mine = own(i, mass);
   const Record record = kept ? records[i] : Record();
-  if (mine.shape != record.shape || mine.dipole != record.dipole) return false;
-  if (mine.shape == POINT && !mine.dipole) return true;
+  if (2 * mine.shape + mine.dipole != record.kind) return false;
+  if (record.kind == 0.0) return true;
 
   const Pose made = pose(record, i, state);
   double momentum[3];
   rate(i, mine, momentum);
   const double opposite[4] = {-made.q[0], -made.q[1], -made.q[2], -made.q[3]};
   return same(mine.moments, record.moments, 3) &&
-      (mine.shape == POINT || mine.shape == SPHERE || same(mine.q, made.q, 4) ||
+      (mine.shape == POINT || (mine.shape == SPHERE && !atom->quat) || same(mine.q, made.q, 4) ||
        same(mine.q, opposite, 4)) &&
       (!mine.dipole || same(atom->mu[i], made.mu, 3)) && same(momentum, made.momentum, 3);
 }
@@ -279,33 +346,23 @@ void Extended::copy(int from, int to)
 int Extended::packed_size(int i) const
 {
   if (!kept) return 0;
-  return records[i].shape == POINT && !records[i].dipole ? 1 : RECORD_SIZE;
+  return records[i].kind == 0.0 ? 1 : RECORD_SIZE;
 }
 
 int Extended::pack(int i, double *buf) const
 {
-  if (!kept) return 0;
-  const Record &record = records[i];
-  buf[0] = 2 * record.shape + record.dipole;
-  if (buf[0] == 0.0) return 1;
-  std::copy_n(record.moments, 3, buf + 1);
-  std::copy_n(record.relative, 4, buf + 4);
-  std::copy_n(record.mu_body, 3, buf + 8);
-  return RECORD_SIZE;
+  const int size = packed_size(i);
+  if (size) std::memcpy(buf, &records[i], size * sizeof(double));
+  return size;
 }
 
 int Extended::unpack(int i, const double *buf)
 {
   if (!kept) return 0;
-  Record &record = records[i];
-  record = Record();
-  if (buf[0] == 0.0) return 1;
-  record.shape = (int) buf[0] / 2;
-  record.dipole = (int) buf[0] % 2;
-  std::copy_n(buf + 1, 3, record.moments);
-  std::copy_n(buf + 4, 4, record.relative);
-  std::copy_n(buf + 8, 3, record.mu_body);
-  return RECORD_SIZE;
+  records[i] = Record();
+  const int size = buf[0] == 0.0 ? 1 : RECORD_SIZE;
+  std::memcpy(&records[i], buf, size * sizeof(double));
+  return size;
 }
 
 double Extended::memory_usage() const

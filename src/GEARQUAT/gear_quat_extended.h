@@ -4,6 +4,7 @@
 ------------------------------------------------------------------------- */
 
 /* Atoms of bodies that are more than points: spheres, ellipsoids, lines, triangles, and dipoles.
+   The source has a table of all per-atom data of LAMMPS: how they follow a rigid motion.
 
    When bodies are made, own_momenta() gives the contributions of an atom to inertia and angular
    momentum, and attach() records its position and orientation in its body.  The record travels with
@@ -35,7 +36,8 @@ class Extended : protected Pointers {
   Extended(LAMMPS *lmp, const Scheme &scheme);
   void set_scheme(const Scheme &other) { scheme = other; }
 
-  /// Ends the run on all ranks, naming an atom, if one of `atoms` (local indices) cannot be moved.
+  /// Ends the run on all ranks, naming an atom, if one of `atoms` (local indices) cannot be moved;
+  /// or naming the atom style, if it has data that this fix cannot move.
   void refuse(const std::vector<int> &atoms) const;
 
   // bodies are made; earlier records are dropped
@@ -79,18 +81,20 @@ class Extended : protected Pointers {
   int packed_size(int atom) const;
   int pack(int atom, double *buf) const;
   int unpack(int atom, const double *buf);
-  static constexpr int RECORD_SIZE = 11;    ///< packed
+  static constexpr int RECORD_SIZE = 11;    ///< doubles of a record
   double memory_usage() const;
 
  private:
   enum Shape { POINT, SPHERE, ELLIPSOID, LINE, TRIANGLE, BODY };
 
-  struct Record {    ///< an atom relative to its body
-    int shape;
-    int dipole;            ///< 1 if it has one
+  struct Record {          ///< an atom relative to its body
+    double kind;           ///< 2 * shape, plus 1 for a dipole; 0: the rest is unused
     double moments[3];     ///< of the atom itself, along its principal axes, its own frame
     double relative[4];    ///< quaternion of this frame in the body frame
     double mu_body[3];
+
+    int shape() const { return (int) kind / 2; }
+    bool dipole() const { return (int) kind % 2; }
   };
 
   struct Own {    ///< an atom in the atom style

@@ -3,7 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-// orientations in LAMMPS' atom styles; its quaternions have the scalar first.
+// orientations in LAMMPS' atom styles.
 // LAMMPS keeps the corners of a triangle in a frame that is principal only if its data file has the
 // triangle at the origin: the own frame follows from the corners, which do not change.
 
@@ -20,17 +20,6 @@ using namespace LAMMPS_NS;
 using namespace GearQuat;
 
 const bool Extended::READS_ATOM_STYLES = true;
-
-static void from_lammps(const double *wxyz, double *q)
-{
-  for (int k = 0; k < 4; ++k) q[k] = wxyz[(k + 1) % 4];
-  project_norm(q);
-}
-
-static void to_lammps(const double *q, double *wxyz)
-{
-  for (int k = 0; k < 4; ++k) wxyz[(k + 1) % 4] = q[k];
-}
 
 void Extended::find_atom_styles()
 {

@@ -216,6 +216,8 @@ static constexpr ActOnAtoms ACTS_ON_ATOMS[] = {
     {"^wall/flow", ActOnAtoms::SINGLE, ActOnAtoms::GROUP,
      "gives a new random velocity to atoms that pass a plane", GROUP},
     {"^smd/setvel", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "sets velocities", GROUP},
+    {"^sph/stationary", ActOnAtoms::SINGLE, ActOnAtoms::GROUP,
+     "advances densities and energies, as this fix does for bodies", GROUP},
     {"^tmd$", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "moves atoms towards a target",
      "use fix spring or fix spring/self"},
     {"^recenter", ActOnAtoms::SINGLE, ActOnAtoms::ANY,

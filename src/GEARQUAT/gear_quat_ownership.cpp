@@ -85,7 +85,8 @@ void Ownership::note_box(const double *h, const double *corner)
   last_box.insert(last_box.end(), corner, corner + 3);
 }
 
-void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh)
+void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh,
+                    const Former *former)
 {
   std::vector<int> atoms;
   for (int i = 0; i < atom->nlocal; ++i)
@@ -94,7 +95,7 @@ void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
   const bool any_extended = records.any(atoms);
   if (any_extended && !records.has_records()) records.reset(true, (int) owned.size());
 
-  const Assembly assembly(lmp, given, any_extended ? &records : nullptr, ids);
+  const Assembly assembly(lmp, given, any_extended ? &records : nullptr, ids, former);
   note_scratch(assembly.memory_usage() + ids.capacity() * sizeof(tagint));
   assembly.for_sites([&](const Assembly::Made &one, int i, const double *arm_body) {
     body_id[i] = one.body.id;
@@ -114,7 +115,12 @@ void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
 
 void Ownership::recreate()
 {
-  create(std::vector<tagint>(body_id.begin(), body_id.begin() + atom->nlocal), GivenBodies());
+  const std::vector<tagint> ids(body_id.begin(), body_id.begin() + atom->nlocal);
+  Former former = {arm, std::vector<std::array<double, 9>>(atom->nlocal)};
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (index[i] >= 0) std::copy_n(bodies.axes(index[i]), 9, former.axes[i].begin());
+  clear();
+  add(ids, GivenBodies(), false, &former);
   choose_large();
 }
 

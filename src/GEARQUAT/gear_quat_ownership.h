@@ -36,6 +36,8 @@ class Fix;
 
 namespace LAMMPS_NS::GearQuat {
 
+struct Former;
+
 /// Result of a comparison, the same on all ranks; bodies are given by their IDs, 0 for none.
 struct Comparison {
   bigint removed_freedoms = 0;    ///< removed by rigidity from bodies wholly in the group
@@ -86,7 +88,9 @@ class Ownership : protected Pointers {
   /// Builds all bodies from the atoms; ids: body of every owned atom, 0 for none.
   void create(const std::vector<tagint> &ids, const GivenBodies &given);
   /// Builds more bodies, from atoms that are in none.  fresh: in a step, without histories.
-  void add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh);
+  /// former: null, or of the same bodies, whose axes are kept if possible.
+  void add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh,
+           const Former *former = nullptr);
   /// Rebuilds the same bodies from the atoms' present masses, positions and velocities.
   void recreate();
   /// Replaces the bodies that the command has just made by the bodies of a restart file, made of

@@ -114,6 +114,7 @@ static constexpr int WITHIN_STEP = POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR 
 std::string GearQuat::reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner)
 {
   if (lmp->comm->ghost_velocity) return "velocities are sent to ghost atoms";
+  if (lmp->atom->vest) return "atom style " + lmp->atom->get_style() + " has them as data";
   for (auto *other : lmp->modify->get_fix_list())
     if (other != owner && (lmp->modify->get_fix_mask(other) & WITHIN_STEP))
       return name_of(other) + " may read them";

@@ -14,6 +14,19 @@
 
 namespace LAMMPS_NS::GearQuat {
 
+// LAMMPS' quaternions have the scalar first
+
+inline void from_lammps(const double *wxyz, double *q)
+{
+  for (int k = 0; k < 4; ++k) q[k] = wxyz[(k + 1) % 4];
+  project_norm(q);
+}
+
+inline void to_lammps(const double *q, double *wxyz)
+{
+  for (int k = 0; k < 4; ++k) wxyz[(k + 1) % 4] = q[k];
+}
+
 /// A solid sphere.
 inline void sphere_moments(double mass, double radius, double moments[3])
 {

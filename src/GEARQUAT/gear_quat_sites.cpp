@@ -186,6 +186,8 @@ template <bool POSITIONS, bool VELOCITIES> void Sites::place_points()
     place_points<POSITIONS, VELOCITIES, true>();
   } else
     place_points<POSITIONS, VELOCITIES, false>();
+  if (VELOCITIES && atom->vest)
+    for (const Site &site : sites) std::copy_n(atom->v[site.atom], 3, atom->vest[site.atom]);
   if (!extended.sites.empty()) extended.place(bodies.states(), POSITIONS, VELOCITIES);
 }
 
@@ -197,6 +199,16 @@ void Sites::place(bool velocities)
 void Sites::place_velocities()
 {
   place_points<false, true>();
+}
+
+void Sites::advance_densities(double step)
+{
+  if (!atom->rho || !atom->esph || !atom->vest) return;    // of atom style sph alone
+  const double half = 0.5 * step * force->ftm2v;
+  for (const Site &site : sites) {
+    atom->rho[site.atom] += half * atom->drho[site.atom];
+    atom->esph[site.atom] += half * atom->desph[site.atom];
+  }
 }
 
 void Sites::place_extended()

@@ -52,6 +52,8 @@ class Sites : protected Pointers {
   void place(bool velocities);
   /// Sets only velocities: before a run positions were set by the last step, or by the user.
   void place_velocities();
+  /// Half a step of densities and energies of smoothed particles, as in fix sph.
+  void advance_densities(double step);
   /// Sets orientations and rates of extended atoms, if only these have changed.
   void place_extended();
   /// True if masses, positions and velocities of all atoms match their bodies.  Ends the run if
