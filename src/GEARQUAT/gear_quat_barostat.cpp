@@ -301,6 +301,7 @@ void Barostat::begin_passes(const Integrator &integrator)
 {
   Thermostat::begin_passes(integrator);
   width = integrator.step();
+  std::copy_n(asked.period, Upper::SIZE, periods.begin());
   find_target(update->ntimestep, width);
   for (auto &sum : tensor) sum = ExactSum();
 }

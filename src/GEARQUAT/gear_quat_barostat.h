@@ -101,8 +101,7 @@ class Barostat : public Thermostat {
   bool extensive(int n) const override { return n == E_BOX || Thermostat::extensive(n); }
   double energy() const override;
 
-  void write(Sections &file) const override;
-  std::string read(const Sections &file) override;
+  void fields(Fields &v) override;
 
  private:
   friend class Coupling;    // calls the functions required by correct_by_passes()
@@ -116,11 +115,12 @@ class Barostat : public Thermostat {
   int values_of_heat = 0;
   CorrectorCoefficients::Array heat_coefficients;    ///< of a first-order equation
   double width = 0.0;                                ///< the step of the histories
-  Upper target;                              ///< pressures of the present step, or at a node
-  Upper target_rate;                         ///< change of these targets with time
-  double kt = 0.0;                           ///< of the mass of the box in that step
-  Upper made_target, made_rate;              ///< of the last step before this run
-  std::array<double, 2> told_of_box = {};    ///< last logged freedoms and total momentum
+  Upper target;                                    ///< pressures of the present step, or at a node
+  Upper target_rate;                               ///< change of these targets with time
+  double kt = 0.0;                                 ///< of the mass of the box in that step
+  Upper made_target, made_rate;                    ///< of the last step before this run
+  std::array<double, Upper::SIZE> periods = {};    ///< damping times in the last step
+  std::array<double, 2> told_of_box = {};          ///< last logged freedoms and total momentum
 
   Upper matrix, rate;    ///< M and G in the present pass, or at a node
   struct Moving {        ///< variables that a step changes
@@ -182,7 +182,6 @@ class Barostat : public Thermostat {
   double period_for_box(double h) const;
   void set_heat(const Scheme &scheme);
   void advance_box(double h, int values);
-  double mode_of_box() const;
   Upper drive() const;
   double rate_of_heat() const;
   /// The components of Upper that may be nonzero in this box: tilts come last.

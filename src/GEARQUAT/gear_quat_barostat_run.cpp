@@ -4,7 +4,7 @@
 ------------------------------------------------------------------------- */
 
 /* Keywords of constant pressure, before a run: unsupported settings, the temperature for the box's
-   mass, and the start, in which every node has its own box.  Also restart files. */
+   mass, and the start, in which every node has its own box. */
 
 #include "gear_quat_barostat.h"
 
@@ -146,6 +146,8 @@ const char *Barostat::reason_to_start_anew() const
         std::fabs(target_rate[k] - made_rate[k]) >
             ROUNDING * (std::fabs(target_rate[k]) + std::fabs(made_rate[k])))
       return "the barostat has another target than in the last steps";
+    if (asked.on[k] && periods[k] != asked.period[k])
+      return "the barostat has another damping time than in the last steps";
   }
   return nullptr;
 }
@@ -444,63 +446,15 @@ void Barostat::refuse_box() const
    restart
 ------------------------------------------------------------------------- */
 
-/// The free components and the coupled directions, as a number.
-double Barostat::mode_of_box() const
+void Barostat::fields(Fields &v)
 {
-  int mode = 0;
-  for (int k = 0; k < Upper::SIZE; ++k) mode |= (int) asked.on[k] << k;
-  for (int k = 0; k < 3; ++k) mode |= asked.tied[k] << (Upper::SIZE + 2 * k);
-  return mode;
-}
-
-void Barostat::write(Sections &file) const
-{
-  Thermostat::write(file);
-  Sections::Numbers numbers = {mode_of_box(), (double) asked.length, words.start, width};
-  for (const auto *part : {&target, &target_rate, &correction, &virial.value()})
-    numbers.insert(numbers.end(), part->m.begin(), part->m.end());
-  file.put("barostat", numbers);
-  const Box::Record of_box = box.record();
-  file.put("box", {of_box.begin(), of_box.end()});
-  file.put("cell", {cell.record().begin(), cell.record().end()});
-  file.put("heat of box", {heat.record().begin(), heat.record().end()});
-  const Chain::Record of_chain = chain.record();
-  Sections::Numbers chained(of_chain.y.begin(), of_chain.y.end());
-  of_chain.append_sums(chained);
-  file.put("chain of box", chained);
-}
-
-std::string Barostat::read(const Sections &file)
-{
-  const std::string missing = Thermostat::read(file);
-  const auto &numbers = file.get("barostat"), &of_box = file.get("box"), &rows = file.get("cell"),
-             &of_heat = file.get("heat of box"), &chained = file.get("chain of box");
-  Chain::Record of_chain = {};
-  const size_t variables = of_chain.y.size();
-  if (numbers.size() < 4 + 4 * Upper::SIZE || of_box.size() < Box::NUMBERS || rows.empty() ||
-      of_heat.empty() || chained.size() <= variables)
-    return "the motion of the box";
-  if (!acts() && asked.temperature == 0.0) words.start = words.stop = numbers[2];
-  width = numbers[3];
-  auto from = numbers.begin() + 4;
-  Upper of_virial;
-  for (auto *part : {&target, &target_rate, &correction, &of_virial}) {
-    std::copy_n(from, Upper::SIZE, part->m.begin());
-    from += Upper::SIZE;
-  }
-  virial.restore(of_virial);
-  CellHistory::Rows of_cell = {};
-  std::copy_n(rows.begin(), std::min(rows.size(), of_cell.size()), of_cell.begin());
-  cell.restore(of_cell);
-  box.restore(of_box.data(), cell.matrix());
+  double temperature = words.start;
+  Thermostat::fields(v);
+  v(temperature, kt, width, target, target_rate, correction, periods, virial, box, cell, heat,
+    chain, frequency);
+  if (!v.reads()) return;
+  if (!acts() && asked.temperature == 0.0) words.start = words.stop = temperature;
   matrix = cell.matrix();
   if (width != 0.0) rate = cell.rate(width);
-  ScalarHistory::Rows saved_heat = {};
-  std::copy_n(of_heat.begin(), std::min(of_heat.size(), saved_heat.size()), saved_heat.begin());
-  heat.restore(saved_heat);
-  std::copy_n(chained.begin(), variables, of_chain.y.begin());
-  size_t at = variables;
-  of_chain.take_sums(chained, at);
-  chain.restore(of_chain);
-  return missing;
+  box.resume(matrix);
 }

@@ -19,7 +19,6 @@
 #define LMP_GEAR_QUAT_BODIES_H
 
 #include "gear_quat_integrator.h"
-#include "gear_quat_sections.h"
 
 #include "lmptype.h"
 

@@ -146,19 +146,9 @@ void Box::flip()
   domain->lamda2x(atom->nlocal);
 }
 
-Box::Record Box::record() const
+void Box::resume(const Upper &deformation)
 {
-  Record all;
-  std::copy(reference.begin(), reference.end(), all.begin());
-  std::copy_n(origin, 3, all.begin() + 12);
-  return all;
-}
-
-void Box::restore(const double *saved, const Upper &deformation)
-{
-  std::copy_n(saved, 12, reference.begin());
-  std::copy_n(saved + 12, 3, origin);
   derive();
   set(deformation);
-  note_shown();    // LAMMPS has read it from the same file
+  note_shown();
 }

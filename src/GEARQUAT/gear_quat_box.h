@@ -71,11 +71,10 @@ class Box : protected Pointers {
     inverse.times(velocity, s.velocity);
   }
 
-  /// The reference and the fixed point, for restart files.
-  static constexpr int NUMBERS = 15;
-  using Record = std::array<double, NUMBERS>;
-  Record record() const;
-  void restore(const double *saved, const Upper &deformation);
+  /// The reference and the fixed point.
+  template <class V> void fields(V &v) { v(reference, origin); }
+  /// They were read from a restart file, as LAMMPS' box was.
+  void resume(const Upper &deformation);
 
  private:
   std::vector<double> fixed;

@@ -64,6 +64,7 @@ class BoxFrequency {
   {
     return value() > 0.0 ? 0.5 * WARNED * fastest / value() : HUGE_VAL;
   }
+  template <class V> void fields(V &v) { v(last, against, along, probed); }
   /// A damping time without a warning, rounded up.
   double needed_period(double h) const { return rounded_up(1.05 * period * part(h) / WARNED); }
 

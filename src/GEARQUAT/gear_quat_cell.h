@@ -36,6 +36,8 @@ struct Upper {
   static constexpr int ROW[] = {0, 1, 2, 1, 0, 0}, COLUMN[] = {0, 1, 2, 2, 2, 1};
   std::array<double, SIZE> m = {};
 
+  template <class V> void fields(V &v) { v(m); }
+
   static Upper one() { return {{1.0, 1.0, 1.0, 0.0, 0.0, 0.0}}; }
 
   double &operator[](int k) { return m[k]; }
@@ -251,8 +253,8 @@ class CellHistory {
     total = Upper();
   }
 
-  const Rows &record() const { return rows; }
-  void restore(const Rows &saved) { rows = saved; }
+  /// Between steps.
+  template <class V> void fields(V &v) { v(rows); }
 
  private:
   int n = 0;

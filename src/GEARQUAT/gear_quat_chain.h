@@ -41,7 +41,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -257,35 +256,11 @@ class Chain {
     return found;
   }
 
-  /// The complete state, for restart files: the variables, and the sums with their ages.
-  struct Record {
-    Variables y;
-    double known;
-    std::array<double, MOST_SUMS> sums, ages;
-
-    /// Appends the sums as numbers of a file: how many there are, and each sum with its age.
-    void append_sums(std::vector<double> &numbers) const
-    {
-      numbers.push_back(known);
-      for (int i = 0; i < (int) known; ++i) numbers.insert(numbers.end(), {sums[i], ages[i]});
-    }
-    /// Reads these numbers from position `at`, which is advanced; there are no sums if the file
-    /// ends before.
-    void take_sums(const std::vector<double> &numbers, size_t &at)
-    {
-      const int count = at < numbers.size() ? (int) numbers[at++] : 0;
-      known = std::min(count, (int) MOST_SUMS);
-      for (int i = 0; i < count && at + 1 < numbers.size(); ++i, at += 2)
-        if (i < MOST_SUMS) sums[i] = numbers[at], ages[i] = numbers[at + 1];
-    }
-  };
-  Record record() const { return {now, (double) known, sums, ages}; }
-  void restore(const Record &all)
+  /// Between steps.
+  template <class V> void fields(V &v)
   {
-    now = begun = all.y;
-    known = (int) all.known;
-    sums = all.sums;
-    ages = all.ages;
+    v(now, known, sums, ages);
+    if (v.reads()) begun = now;
   }
 
  private:

@@ -20,7 +20,7 @@
 #define LMP_GEAR_QUAT_COUPLING_H
 
 #include "gear_quat_bodies.h"
-#include "gear_quat_sections.h"
+#include "gear_quat_fields.h"
 #include "gear_quat_startup.h"
 #include "gear_quat_step_control.h"
 #include "pointers.h"
@@ -152,11 +152,7 @@ class Coupling : protected Pointers {
 
   // restart files
 
-  /// Writes the sections of the coupling, the same on all ranks.  Local.
-  virtual void write(Sections &file) const = 0;
-  /// Reads the sections of the same kind of coupling.  Returns the items missing in the file, or an
-  /// empty text.  Local.
-  virtual std::string read(const Sections &file) = 0;
+  virtual void fields(Fields &v) = 0;
 
  protected:
   Bodies &bodies;

@@ -90,14 +90,15 @@ void DrivenBox::drive(Fix *deform)
 {
   if (!deform && !cell) return;
   if (!deform == !!cell) {
-    Sections kept;
-    if (step.coupling) step.coupling->write(kept);
+    Fields kept;
+    if (step.coupling) step.coupling->fields(kept);
     auto made = deform
         ? std::make_unique<DrivenCell>(lmp, fix, bodies, args.thermostat, step.scheme(), images)
         : nullptr;
     cell = made.get();
     step.set_coupling(made ? std::move(made) : make_coupling(lmp, fix, args, bodies, sites));
-    if (step.coupling && kept.has("chains", 1)) step.coupling->read(kept);
+    Fields again(kept.numbers());
+    if (step.coupling && !kept.numbers().empty()) step.coupling->fields(again);
   }
   if (cell) cell->obey(deform);
 }

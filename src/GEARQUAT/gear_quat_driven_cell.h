@@ -87,13 +87,9 @@ class DrivenCell : public Thermostat {
 
   int elements() const override { return acts() ? (int) Thermostat::ELEMENTS : 0; }
 
-  void write(Sections &file) const override
+  void fields(Fields &v) override
   {
-    if (acts()) Thermostat::write(file);
-  }
-  std::string read(const Sections &file) override
-  {
-    return acts() ? Thermostat::read(file) : std::string();
+    if (acts()) Thermostat::fields(v);
   }
 
  private:

@@ -31,6 +31,7 @@ struct KineticSums {
   double rotation = 0.0;
 
   double power() const { return force_power + torque_power; }
+  template <class V> void fields(V &v) { v(force_power, torque_power, translation, rotation); }
 
   /// torque_body: about the center of mass.
   void add(const RigidBody &body, const double *force, const double *torque_body,

@@ -125,27 +125,3 @@ double IsokineticConstraint::element(int n)
   if (n == HEAT) return heat.value() * force->mvv2e;
   return n == ALPHA_TRANSLATION ? alpha.translation : alpha.rotation;
 }
-
-/* ----------------------------------------------------------------------
-   restart
-------------------------------------------------------------------------- */
-
-void IsokineticConstraint::write(Sections &file) const
-{
-  file.put("isokinetic",
-           {(double) mode, (double) counted, target.force_power, target.torque_power,
-            target.translation, target.rotation});
-  file.put("heat", {heat.record().begin(), heat.record().end()});
-}
-
-std::string IsokineticConstraint::read(const Sections &file)
-{
-  const auto &saved = file.get("isokinetic"), &rows = file.get("heat");
-  if (saved.size() < 6 || rows.empty()) return "the kinetic energy that isokinetic keeps";
-  counted = (bigint) saved[1];
-  target = {saved[2], saved[3], saved[4], saved[5]};
-  ScalarHistory::Rows of_heat = {};
-  std::copy_n(rows.begin(), std::min(rows.size(), of_heat.size()), of_heat.begin());
-  heat.restore(of_heat);
-  return "";
-}

@@ -58,8 +58,7 @@ class IsokineticConstraint : public Coupling {
   double element(int n) override;
   bool extensive(int n) const override { return n == HEAT; }
 
-  void write(Sections &file) const override;
-  std::string read(const Sections &file) override;
+  void fields(Fields &v) override { v(counted, target, heat); }
 
  private:
   friend class Coupling;    // calls the functions required by correct_by_passes()

@@ -324,7 +324,6 @@ Starter Motion::starter(bool needed)
 void Motion::begin(bool full)
 {
   step.started = true;
-  resumed = false;
   // after the checks of the start, since an error of a coupling may have the same cause
   if (chosen) warn_of_vibrations(*chosen, step.scheme(), true);
   chosen.reset();
@@ -354,66 +353,92 @@ int Motion::extensive(int n) const
    restart
 ------------------------------------------------------------------------- */
 
-void Motion::write(Sections &file) const
+Motion::Settings Motion::settings() const
 {
   const Scheme &scheme = step.tolerance ? args.scheme : step.scheme();
-  file.put("scheme",
-           {(double) scheme.first(), (double) scheme.values(), (double) scheme.compensate,
-            (double) scheme.trial, (double) scheme.tuned, (double) (int) scheme.projection,
-            (double) scheme.passes});
-  file.put("motion", {(double) step.started, step.length()});
-  if (step.tolerance) step.tolerance->write(file);
-  if (step.coupling) step.coupling->write(file);
+  const ThermostatWords &temp = args.thermostat;
+  const PressureWords &box = args.pressure;
+  int components = 0;    // and which are coupled
+  for (int k = 0; k < PressureWords::COMPONENTS; ++k) components |= (int) box.on[k] << k;
+  for (int k = 0; k < 3 && box.any(); ++k)
+    components |= box.tied[k] << (PressureWords::COMPONENTS + 2 * k);
+  Settings found = {};
+  found.formulation = scheme.first();
+  found.values = scheme.values();
+  found.compensate = scheme.compensate;
+  found.tolerance = scheme.trial;
+  found.tuned = scheme.tuned;
+  found.projection = (int) scheme.projection;
+  found.passes = scheme.passes;
+  found.isokinetic = (int) args.isokinetic;
+  found.chains = temp.damp > 0.0 ? 1 + temp.separate : 0;
+  found.chain_length = temp.length;
+  found.box = components;
+  found.box_chain = box.length;
+  found.started = step.started;
+  return found;
 }
 
-std::string Motion::read(const Sections &file)
+/// The keywords with another value in the file, without which histories cannot continue.
+std::vector<std::string> Motion::other_settings(const Settings &mine) const
 {
-  Sections mine;
-  write(mine);
-  std::vector<std::string> others;    // keywords that had another value
-  const auto compare = [&](const char *keyword, const char *section, int n) {
-    if (file.number(section, n) != mine.number(section, n)) others.emplace_back(keyword);
+  std::vector<std::string> others;
+  const auto compare = [&](const char *keyword, double Settings::*member) {
+    if (of_file.*member != mine.*member) others.emplace_back(keyword);
   };
-  compare("formulation", "scheme", 0);
+  compare("formulation", &Settings::formulation);
   // a default depends on the formulation
-  if (args.states("values") || others.empty()) compare("values", "scheme", 1);
-  compare("compensate", "scheme", 2);
-  compare("tolerance", "scheme", 3);
-  compare("isokinetic", "isokinetic", 0);
-  const bool both = file.has("thermostat", 1) && mine.has("thermostat", 1);
-  compare(both ? "thermostat" : "temp", "thermostat", 0);
-  if (both) compare("tchain", "thermostat", 1);
-  compare("iso, aniso, tri, x, y, z, xy, xz, yz or couple", "barostat", 0);
-  compare("pchain", "barostat", 1);
-  const bool same = others.empty(), had_started = file.number("motion", 0) != 0.0;
-  step.started = resumed = had_started && same;
+  if (args.states("values") || others.empty()) compare("values", &Settings::values);
+  compare("compensate", &Settings::compensate);
+  compare("tolerance", &Settings::tolerance);
+  compare("isokinetic", &Settings::isokinetic);
+  const bool both = of_file.chains != 0.0 && mine.chains != 0.0;
+  compare(both ? "thermostat" : "temp", &Settings::chains);
+  if (both) compare("tchain", &Settings::chain_length);
+  compare("iso, aniso, tri, x, y, z, xy, xz, yz or couple", &Settings::box);
+  if (of_file.box != 0.0 && mine.box != 0.0) compare("pchain", &Settings::box_chain);
+  return others;
+}
 
-  std::vector<std::string> missing;
-  const auto take = [&](auto &part) {
-    const std::string lacks = part->read(file);
-    if (!lacks.empty()) missing.push_back(lacks);
-  };
-  if (step.coupling && same) take(step.coupling);
-  if (step.tolerance && step.started) take(step.tolerance);
-  step.time_step.restore(file.number("motion", 1));
-  if (step.length() != 0.0) step.make_integrator();
+void Motion::fields(Fields &v)
+{
+  v(step.time_step, edge_rate, movers);
+  if (step.tolerance) step.tolerance->fields(v);
+  if (step.coupling) step.coupling->fields(v);
+}
 
-  if (step.started && comm->me == 0)
+void Motion::write(Fields &file)
+{
+  Settings mine = settings();
+  file(mine);
+  fields(file);
+}
+
+bool Motion::read(Fields &file)
+{
+  const Settings mine = settings();
+  const auto others = other_settings(mine);
+  if (others.empty()) {
+    step.started = of_file.started;
+    fields(file);
+    if (!file.is_complete()) return false;
+    if (step.length() != 0.0) step.make_integrator();
+  }
+  if (comm->me != 0) return true;
+  if (step.started)
     utils::logmesg(lmp, "Fix gear/quat {}: histories of the restart file go on with {}\n", fix->id,
                    words_of_scheme());
-
-  const double tuned = file.number("scheme", 4);
-  if (step.started && tuned != mine.number("scheme", 4) && comm->me == 0)
+  if (step.started && of_file.tuned != mine.tuned)
     error->warning(
         FLERR,
         "Fix gear/quat: the restart file was written with corrector {}; its histories go "
         "on with corrector {}",
-        tuned != 0.0 ? "tuned" : "gear", step.scheme().tuned ? "tuned" : "gear");
-  if (had_started && !same && comm->me == 0)
+        of_file.tuned != 0.0 ? "tuned" : "gear", step.scheme().tuned ? "tuned" : "gear");
+  if (of_file.started && !others.empty())
     error->warning(
         FLERR,
         "Fix gear/quat: the restart file was written with other settings of {}; poses and "
         "velocities are kept, the higher derivatives are rebuilt",
         utils::join_words(others, ", "));
-  return utils::join_words(missing, " and ");
+  return true;
 }

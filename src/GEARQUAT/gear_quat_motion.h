@@ -72,15 +72,15 @@ class Motion : protected Pointers {
   /// The energy that a thermostat has removed from the bodies; collective.
   double energy() const { return step.coupling ? step.coupling->energy() : 0.0; }
 
-  /// Writes the state other than histories as sections of a restart file.
-  void write(Sections &file) const;
+  /// Writes the state other than histories.
+  void write(Fields &file);
   /// Before the histories of the file arrive: settings of the file that this command does not state
   /// are adopted, if histories can continue with them.
-  void adopt_scheme(const Sections &file);
+  void adopt_scheme(Fields &file);
   /// The histories of the file have arrived.  If they do not fit this command, histories start
   /// again, and rank 0 prints a message, as it does if they continue with another corrector.
-  /// Returns the items that the file lacks, empty for none.
-  std::string read(const Sections &file);
+  /// False if the file is damaged.
+  bool read(Fields &file);
 
  private:
   Fix *fix;
@@ -92,16 +92,32 @@ class Motion : protected Pointers {
   OtherFixes &others;
   Step &step;
   std::map<tagint, Mask> masks;    ///< of the command, by the IDs of bodies
-  bool set_up = false;     ///< LAMMPS has evaluated forces for a run whose first step has not begun
-  bool resumed = false;    ///< histories are from a restart file
-  std::string movers;      ///< IDs of the other fixes that moved atoms in the last steps
+  bool set_up = false;    ///< LAMMPS has evaluated forces for a run whose first step has not begun
+  std::string movers;     ///< IDs of the other fixes that moved atoms in the last steps
+
+  /// Settings in a restart file: histories continue only if most of them are the same.
+  struct Settings {
+    double formulation, values, compensate, tolerance, tuned, projection, passes;
+    double isokinetic, chains, chain_length, box, box_chain;
+    bool started;
+
+    template <class V> void fields(V &v)
+    {
+      v(formulation, values, compensate, tolerance, tuned, projection, passes, isokinetic, chains,
+        chain_length, box, box_chain, started);
+    }
+  };
+  Settings of_file = {};
+  Settings settings() const;
+  std::vector<std::string> other_settings(const Settings &mine) const;
+  void fields(Fields &v);
 
   int of_tolerance() const { return step.tolerance ? (int) Tolerance::ELEMENTS : 0; }
   int of_coupling() const { return step.coupling ? step.coupling->elements() : 0; }
   double longest_step() const;
   ChoiceOfValues scene_of(const MotionSums &here) const;
   ChoiceOfValues scene_of_start(const MotionSums &here) const;
-  double edge_rate = 0.0;    ///< fast edge divided by the step, when the number was chosen
+  double edge_rate = 0.0;    ///< fast edge divided by the step, if the number was chosen
   Vibrations vibrations;
   double advised_step = HUGE_VAL;          ///< by the last warning about vibrations
   std::optional<ChoiceOfValues> chosen;    ///< input to the choice of a start that has not ended

@@ -242,10 +242,10 @@ void Motion::tell_friction()
 
 /// Returns the reason to start histories again with another number of values, null for none.
 /// Reasons are a change of the step, of a rotation or of forces.  Vibrations are from the last
-/// start: runs that are continued from a restart file have no others.  Collective.
+/// start.  Collective.
 const char *Motion::another_scheme_suits()
 {
-  if (!args.automatic_values || resumed) return nullptr;
+  if (!args.automatic_values || edge_rate == 0.0) return nullptr;
   MotionSums here;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     here.add(bodies.rigid_of(ibody), bodies.state_of(ibody));
@@ -265,25 +265,19 @@ const char *Motion::another_scheme_suits()
    the method of a restart file
 ------------------------------------------------------------------------- */
 
-/// Files of releases up to 0.3.0 have neither projection nor passes; these were their defaults.
-void Motion::adopt_scheme(const Sections &file)
+void Motion::adopt_scheme(Fields &file)
 {
-  constexpr int PROJECTION = 5, PASSES = 6;
+  file(of_file);
   Scheme scheme = args.scheme;
-  const bool both = file.has("scheme", PASSES + 1);
-  const int values = (int) file.number("scheme", 1);
-  if (step.tolerance || file.number("scheme", 3) != 0.0 || file.number("motion", 0) == 0.0 ||
-      file.number("scheme", 0) != (double) scheme.first())
+  if (step.tolerance || of_file.tolerance != 0.0 || !of_file.started ||
+      of_file.formulation != (double) scheme.first())
     return;
-  if (args.automatic_values) scheme.rows = values;
-  if (scheme.values() != values) return;
-  if (!args.states("corrector")) scheme.tuned = file.number("scheme", 4) != 0.0;
-  if (scheme.tuned && !has_tuned(scheme.formulation, values)) return;
-  if (!args.states("project"))
-    scheme.projection = both ? (Projection) (int) file.number("scheme", PROJECTION)
-                             : Projection::YES;
-  if (!args.states("passes"))
-    scheme.passes = both ? (int) file.number("scheme", PASSES) : Scheme::AUTOMATIC_PASSES;
+  if (args.automatic_values) scheme.rows = (int) of_file.values;
+  if (scheme.values() != of_file.values) return;
+  if (!args.states("corrector")) scheme.tuned = of_file.tuned != 0.0;
+  if (scheme.tuned && !has_tuned(scheme.formulation, scheme.values())) return;
+  if (!args.states("project")) scheme.projection = (Projection) (int) of_file.projection;
+  if (!args.states("passes")) scheme.passes = (int) of_file.passes;
   step.set_scheme(scheme);
 }
 

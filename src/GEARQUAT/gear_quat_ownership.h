@@ -24,7 +24,6 @@
 #include "gear_quat_bodies.h"
 #include "gear_quat_extended.h"
 #include "gear_quat_infile.h"
-#include "gear_quat_sections.h"
 #include "pointers.h"
 
 #include <array>
@@ -151,12 +150,6 @@ class Ownership : protected Pointers {
   int packed_size(int atom) const;
   int pack_exchange(int atom, double *buf) const;
   int unpack_exchange(int atom, const double *buf);
-  /// Of pack_exchange().
-  static AtomParts packed_parts()
-  {
-    return {ATOM_SIZE - 1, Extended::RECORD_SIZE, BODY_SIZE - STATE_SIZE, STATE_SIZE, LAST_SIZE,
-            LOAD_SIZE};
-  }
   int pack_forward(int n, const int *list, double *buf);
   void unpack_forward(int n, int first, const double *buf);
   int pack_reverse(int n, int first, double *buf);

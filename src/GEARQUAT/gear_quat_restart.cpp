@@ -8,7 +8,6 @@
 #include "gear_quat_infile.h"
 #include "gear_quat_outputs.h"
 #include "gear_quat_ranks.h"
-#include "gear_quat_restart_old.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -33,43 +32,32 @@ Restart::Restart(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, Ownership &o
 
 void Restart::write(FILE *fp) const
 {
-  Sections file;
-  file.put("bodies", {(double) ownership.extended().has_records(), (double) atom->natoms});
-  file.put("parts of atoms", Ownership::packed_parts().numbers());
-  motion.write(file);
-  const Sections::Numbers data = file.packed();
-  const int size = (int) (data.size() * sizeof(double));
+  Fields numbers;
+  double records = ownership.extended().has_records(), all = (double) atom->natoms;
+  numbers(records, all);
+  motion.write(numbers);
+  const double head[] = {MAGIC, FORMAT, (double) numbers.numbers().size()};
+  const int size = (int) (sizeof(head) + numbers.numbers().size() * sizeof(double));
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(data.data(), size, 1, fp);
+  fwrite(head, sizeof(head), 1, fp);
+  fwrite(numbers.numbers().data(), size - sizeof(head), 1, fp);
 }
 
 /// LAMMPS does not pass the size of the block, so the part that every release wrote is read first.
-/// Files of releases up to 0.2.0 begin with the formulation, 0 or 1.
 void Restart::read(const char *buf)
 {
-  double head[Sections::HEAD];
+  double head[3];
   std::memcpy(head, buf, sizeof(head));
-  const double format = head[0] == Sections::MAGIC ? head[1] : 0.0;
-  if (format == Release030::FORMAT) {
-    Release030 old;
-    std::memcpy(&old, buf, sizeof(old));
-    sections = old.sections();
-    release = "0.3.0";
-  } else if (format == Sections::FORMAT) {
-    Sections::Numbers data(head[2] > Sections::HEAD ? (size_t) head[2] : Sections::HEAD);
-    std::memcpy(data.data(), buf, data.size() * sizeof(double));
-    sections.unpack(data);
-  } else
+  if (head[0] != MAGIC || head[1] != FORMAT || !(head[2] >= 0.0))
     error->all(FLERR,
-               "Fix gear/quat: the restart file was written by {} release of GEARQUAT, whose "
-               "data of fix {} this release cannot read; continue with the other release, or let "
-               "it write a data file with write_data and start from that file",
-               format < Release030::FORMAT     ? "an older (0.2.0 or before)"
-                   : format > Sections::FORMAT ? "a newer"
-                                               : "an unpublished",
+               "Fix gear/quat: the data of fix {} in the restart file are from another release of "
+               "GEARQUAT, whose format this release does not read; continue with that release, or "
+               "give the fix another ID, with which its bodies start from their atoms",
                fix->id);
-  if (!sections.has("bodies", 2) || !sections.has("parts of atoms", AtomParts::NUMBERS))
-    error->all(FLERR, "Fix gear/quat: the data of fix {} in the restart file are damaged", fix->id);
+  Fields::Numbers data((size_t) head[2]);
+  std::memcpy(data.data(), buf + sizeof(head), data.size() * sizeof(double));
+  file = Fields(data);
+  file(extended, natoms);
   waiting = true;
 }
 
@@ -100,38 +88,19 @@ std::vector<const double *> Restart::packed_atoms() const
 
   for (int i = 0; i < atom->nlocal; ++i) look(i);
   const bigint all = over_ranks(MPI_SUM, (bigint) without.size(), world);
-  const bigint deleted = (bigint) sections.number("bodies", 1) - atom->natoms;
+  const bigint deleted = (bigint) natoms - atom->natoms;
   if (all > deleted) return packed;    // not only deletions: these rows may not exist
   for (int i = atom->nlocal; !without.empty() && i < atom->nlocal + deleted && i < atom->nmax; ++i)
     look(i);
   return packed;
 }
 
-/// The data of atoms, converted to the lengths of this release.
-Ownership::Resumed Restart::resume_bodies(int group) const
-{
-  std::vector<const double *> packed = packed_atoms();
-  const AtomParts parts = AtomParts::of(sections.get("parts of atoms"));
-  const AtomParts mine = Ownership::packed_parts();
-  const bool extended = sections.number("bodies", 0) != 0.0;
-  std::vector<Sections::Numbers> converted;
-  if (!(parts == mine)) {
-    converted.reserve(packed.size());
-    for (auto &data : packed) {
-      if (!data) continue;
-      converted.push_back(parts.converted(data, mine, extended));
-      data = converted.back().data();
-    }
-  }
-  return ownership.resume(packed, extended, group);
-}
-
 bool Restart::resume(int group)
 {
   waiting = false;
   using Resumed = Ownership::Resumed;
-  motion.adopt_scheme(sections);
-  const Resumed found = resume_bodies(group);
+  motion.adopt_scheme(file);
+  const Resumed found = ownership.resume(packed_atoms(), extended != 0.0, group);
   if (found == Resumed::NONE) {
     if (comm->me == 0)
       error->warning(FLERR,
@@ -139,12 +108,8 @@ bool Restart::resume(int group)
                      "as in the restart file; they are rebuilt from their atoms");
     return false;
   }
-  const std::string missing = motion.read(sections);
-  if (!missing.empty())
-    motion.forget(fmt::format("Fix gear/quat {}: the restart file{} does not have {}; histories "
-                              "are rebuilt",
-                              fix->id, release.empty() ? "" : ", of release " + release + ",",
-                              missing));
+  if (!motion.read(file))
+    error->all(FLERR, "Fix gear/quat: the data of fix {} in the restart file are damaged", fix->id);
   if (found == Resumed::FEWER)    // the motion of the others contributes to derivatives of forces
     motion.forget(fmt::format("Fix gear/quat {}: some bodies of the restart file are in no body of "
                               "this command; histories are rebuilt",

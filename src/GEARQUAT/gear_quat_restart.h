@@ -3,8 +3,9 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Binary restart files.  The global block describes the histories in sections, and the data of
-   atoms contain them.  Files of 0.3.0 and of all later releases can be read.
+/* Binary restart files.  The global block consists of MAGIC, FORMAT, the count of the numbers that
+   follow, and the numbers of the objects (gear_quat_fields.h).  The data of atoms contain the
+   histories.  A file is read by releases with the same format.
 
    LAMMPS passes the block and the data to the fix that has just been created from the atoms:
    read(), note_place() for each atom, and finally resume(). */
@@ -13,7 +14,6 @@
 #define LMP_GEAR_QUAT_RESTART_H
 
 #include "gear_quat_motion.h"
-#include "gear_quat_sections.h"
 
 #include <cstdio>
 
@@ -24,8 +24,7 @@ class Restart : protected Pointers {
   Restart(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, Ownership &ownership, Motion &motion);
 
   void write(FILE *fp) const;
-  /// Ends the run if the file is from 0.2.0 or earlier, or from a release that does not write
-  /// sections.
+  /// Ends the run if a release with another format has written the file.
   void read(const char *buf);
   bool was_read() const { return waiting; }
 
@@ -52,15 +51,16 @@ class Restart : protected Pointers {
   Ownership &ownership;
   Motion &motion;
 
-  Sections sections;      ///< of the file
-  std::string release;    ///< that wrote it, if known
-  bool waiting;           ///< for resume()
+  Fields file;                            ///< the numbers that have not been read yet
+  double extended = 0.0, natoms = 0.0;    ///< of the file: are there extended sites; all atoms
+  bool waiting;                           ///< for resume()
   int place;
 
+  static constexpr double MAGIC = 0x6765617271756174;    ///< "gearquat"
+  static constexpr double FORMAT = 7;
   static constexpr int HEAD = 2;    ///< of an atom: the count of numbers, and its ID
 
   std::vector<const double *> packed_atoms() const;
-  Ownership::Resumed resume_bodies(int group) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

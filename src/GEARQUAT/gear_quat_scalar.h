@@ -46,9 +46,7 @@ class ScalarHistory {
     Nordsieck<1>::correct<1>(rows.data(), values, coefficients, 0, &residual);
   }
 
-  /// The rows, for restart files.
-  const Rows &record() const { return rows; }
-  void restore(const Rows &saved) { rows = saved; }
+  template <class V> void fields(V &v) { v(rows); }
 
  private:
   Rows rows = {};

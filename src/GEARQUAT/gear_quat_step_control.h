@@ -265,6 +265,7 @@ class VariableOrder {
 struct Steady {
   int values = 0, step = 0, repeat = 0;
 
+  template <class V> void fields(V &v) { v(values, step, repeat); }
   void count()
   {
     for (int *one : {&values, &step, &repeat}) *one = std::min(*one + 1, FOR_LONG);

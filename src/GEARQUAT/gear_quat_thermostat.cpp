@@ -317,44 +317,16 @@ double Thermostat::element(int n)
   }
 }
 
-void Thermostat::write(Sections &file) const
+void Thermostat::fields(Fields &v)
 {
-  const Setting s = setting();
-  file.put("thermostat",
-           {(double) mode(), (double) words.length, (double) counted, s.line.kt, s.line.kt_step,
-            s.damp, s.freedoms[TRANSLATION], s.freedoms[ROTATION], s.constant});
-  Sections::Numbers variables, sums;
-  for (const auto &chain : chains) {
-    const Chain::Record record = chain.record();
-    variables.insert(variables.end(), record.y.begin(), record.y.begin() + chain.size());
-    record.append_sums(sums);
-  }
-  file.put("chains", variables);
-  file.put("sums of chains", sums);
-}
-
-std::string Thermostat::read(const Sections &file)
-{
-  const auto &saved = file.get("thermostat"), &variables = file.get("chains"),
-             &sums = file.get("sums of chains");
-  if (saved.size() < 8 || variables.size() < chains.size() * (words.length + 1))
-    return "the friction of temp";
-  counted = (bigint) saved[2];
-  line = {saved[3], saved[4]};
-  damp_before = saved[5];
-  std::copy_n(&saved[6], 2, freedoms);
-  total.restore(file.number("thermostat", 8, TotalMomentum::IN_ALL));
-
-  auto from = variables.begin();
-  size_t at = 0;
-  for (auto &chain : chains) {
-    Chain::Record record = {};
-    std::copy_n(from, chain.size(), record.y.begin());
-    from += chain.size();
-    record.take_sums(sums, at);
-    chain.restore(record);
-  }
+  Setting last = setting();
+  v(chains, counted, cold, last);
+  if (!v.reads()) return;
+  made = last;
+  waiting = true;
+  line = made.line;
+  damp_before = made.damp;
+  std::copy_n(made.freedoms, 2, freedoms);
+  total.restore(made.constant);
   note_friction();
-  if (!sums.empty() || !acts()) return "";
-  return "the kinetic energies of past steps that temp needs (its friction and energy are kept)";
 }

@@ -94,9 +94,7 @@ class Thermostat : public Coupling {
   /// The energy that the chains have removed from the bodies.
   double energy() const override;
 
-  void write(Sections &file) const override;
-  /// Reads a file with the same number of chains and of variables.
-  std::string read(const Sections &file) override;
+  void fields(Fields &v) override;
 
  protected:
   friend class Coupling;    // calls the functions required by correct_by_passes()
@@ -107,10 +105,12 @@ class Thermostat : public Coupling {
   enum Part { TRANSLATION, ROTATION };
   struct Line {    ///< kT of a step, and its change with every step
     double kt = 0.0, kt_step = 0.0;
+    template <class V> void fields(V &v) { v(kt, kt_step); }
   };
   struct Setting {    ///< of a step
     Line line;
     double freedoms[2], damp, constant;
+    template <class V> void fields(V &v) { v(line, freedoms, damp, constant); }
   };
 
   std::vector<Chain> chains, kept;    ///< of both parts, or one for both
@@ -137,7 +137,6 @@ class Thermostat : public Coupling {
   std::vector<Collocation::Scalar> twice_at_nodes;    ///< 2K of the chains
   std::vector<bool> held;                             ///< chains that are constant during the start
 
-  int mode() const { return words.separate ? 2 : 1; }
   /// False without keyword temp: the object only provides degrees of freedom and kinetic energies.
   bool acts() const { return !chains.empty(); }
   Line line_of_step(bigint step) const;

@@ -46,8 +46,7 @@ class TimeStep : protected Pointers {
   double beginning() const;
   double end() const;
 
-  /// Sets the length from a restart file.
-  void restore(double saved) { h = last = saved; }
+  template <class V> void fields(V &v) { v(h, last); }
 
  private:
   double h = 0.0, last = 0.0;

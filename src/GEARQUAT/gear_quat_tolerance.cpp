@@ -293,21 +293,9 @@ double Tolerance::element(int n) const
   }
 }
 
-void Tolerance::write(Sections &file) const
+void Tolerance::fields(Fields &v)
 {
-  file.put("tolerance",
-           {record.values, (double) steady.values, (double) steady.step, (double) steady.repeat,
-            record.steps, record.time, record.smallest, record.values_sum, record.largest,
-            record.held, record.repeated, record.last_length, record.last_energy});
-}
-
-std::string Tolerance::read(const Sections &file)
-{
-  const auto &saved = file.get("tolerance");
-  if (saved.size() < 13) return "the number of values of tolerance";
-  set_values((int) saved[0]);
-  steady = {(int) saved[1], (int) saved[2], (int) saved[3]};
-  record = {saved[0], saved[4], saved[5],  saved[6],  saved[7],
-            saved[8], saved[9], saved[10], saved[11], saved[12]};
-  return "";
+  v(record);
+  if (v.reads()) set_values((int) record.values);
+  v(steady);
 }

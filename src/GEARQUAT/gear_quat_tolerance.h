@@ -78,6 +78,12 @@ class Tolerance : protected Pointers {
   struct Record {
     double values, steps, time, smallest, values_sum, largest, held, repeated;
     double last_length, last_energy;
+
+    template <class V> void fields(V &v)
+    {
+      v(values, steps, time, smallest, values_sum, largest, held, repeated, last_length,
+        last_energy);
+    }
   };
 
   /// scheme: of the fix, with the largest number of values.  every_time: steps end at multiples of
@@ -133,10 +139,7 @@ class Tolerance : protected Pointers {
   void keep_step();
 
   double element(int n) const;
-  /// Sections of a restart file.
-  void write(Sections &file) const;
-  /// Returns the items that the file lacks, empty for none.
-  std::string read(const Sections &file);
+  void fields(Fields &v);
 
  private:
   const Fix *fix;

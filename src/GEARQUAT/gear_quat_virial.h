@@ -40,7 +40,7 @@ class MolecularVirial : protected Pointers {
   void measure(double **f, double energy);
   /// The virial in units of mass times velocity squared.
   const Upper &value() const { return virial; }
-  void restore(const Upper &saved) { virial = saved; }
+  template <class V> void fields(V &v) { v(virial); }
   /// True if torques act on some atoms themselves, which V does not include.  Collective.
   bool has_torques() const;
   /// True if another compute requests a virial in this step.

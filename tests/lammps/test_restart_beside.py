@@ -1,10 +1,8 @@
-"""A restart together with other fixes that store data of atoms in the same file, and files of other releases.
+"""A restart together with other fixes that store data of atoms in the same file.
 
 In a restart file the data of an atom are one block after another, one for each fix; a fix skips the
 blocks before its own by the number at the beginning of each.
 """
-
-import struct
 
 import pytest
 from scenes import restarted, water
@@ -44,25 +42,3 @@ def test_other_fixes_find_their_data(lmp_tree, data, order, ranks):
         assert found == pytest.approx(right, rel=1e-11)
         assert right[-1] != pytest.approx(1.01 * right[-1], rel=1e-11)
     assert whole.thermo[-1]["f_spring"][-1] > 0.1
-
-
-MAGIC = struct.pack("d", float(int.from_bytes(b"gearquat", "big")))
-
-
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize(
-    "number, other, whose",
-    [(0, 1.0, "an older (0.2.0 or before)"), (1, 99.0, "a newer"), (1, 5.0, "an unpublished")],
-)
-def test_files_of_other_releases_are_refused(lmp_tree, data, ranks, number, other, whose):
-    """Files of 0.2.0 begin with the formulation, 0 or 1; current files with a magic number."""
-    file = lmp_tree.folder / "file.restart"
-    lmp_tree.succeed(water(data, run=f"run 1\nwrite_restart {file}"))
-    content = file.read_bytes()
-    assert content.count(MAGIC) == 1
-    at = content.index(MAGIC) + 8 * number
-    file.write_bytes(content[:at] + struct.pack("d", other) + content[at + 8 :])
-    message = f"written by {whose} release of GEARQUAT"
-    result = lmp_tree.refuse(restarted(water(data, run="run 1"), file), message, ranks=ranks)
-    assert len(set(result.errors)) == 1
-    assert "fix move" in result.errors[0] and "write_data" in result.errors[0]

@@ -1,6 +1,7 @@
 /* Nose-Hoover chains: energy balance, response to the target compared with a reference solution,
    orders of the conserved quantity, step changes, and stiff chains far from the target. */
 
+#include "chain_record.h"
 #include "thermostatted.h"
 #include "tied_bodies.h"
 
@@ -19,7 +20,8 @@ Scheme with(Formulation formulation, int values, bool tuned)
 
 Host tied(const Scheme &scheme, int length, double h, const TargetOf &target_of)
 {
-  return Host{TiedBodies::BODIES, TiedBodies::at_start(), TiedBodies::loads, target_of, scheme, length, h};
+  return Host{
+      TiedBodies::BODIES, TiedBodies::at_start(), TiedBodies::loads, target_of, scheme, length, h};
 }
 
 double all_energy(const Host &host)
@@ -67,19 +69,19 @@ TEST(Chain, WhatItTakesIsWhatItsFrictionDoes)
     for (const double h : {0.3, -0.3}) {
       Check::Numbers numbers(length);
       const ChainTarget at = {0.7, 0.11, 9.0, 1.3};
-      Chain::Record begun = {};
+      ChainRecord begun = {};
       for (int k = 0; k < length; ++k) begun.y[k] = numbers.next();
       Chain chain(length);
-      chain.restore(begun);
+      begun.restore(chain);
       const double when[] = {-1.0, 0.0, 1.0}, twice[] = {4.2, 5.0, 4.7};
       const ChainDrive drive = ChainDrive::through(3, when, twice);
       const auto energy_after = [&](double until) {
         ChainTarget then = at;
         then.kt += at.kt_rate * h * until;
         Chain other(length);
-        Chain::Record all = {};
+        ChainRecord all = {};
         all.y = chain.flow(at, drive, h, until).y;
-        other.restore(all);
+        all.restore(other);
         return other.energy(then);
       };
       // Gauss' rule of five points in ten pieces
@@ -244,7 +246,7 @@ TEST(Chain, ARecordIsTheChain)
   });
   Host other = host;
   other.chain = Chain(3);
-  other.chain.restore(host.chain.record());
+  ChainRecord::of(host.chain).restore(other.chain);
   EXPECT_NE(other.chain.friction(), 0.0);
   for (Host *one : {&host, &other})
     for (int n = 0; n < 20; ++n) one->step();
@@ -260,7 +262,7 @@ TEST(Chain, OtherDegreesOfFreedomLeaveItsEnergyAndItsFriction)
   });
   const ChainTarget before = target(0.0), more = {0.5, 0.0, 18.0, 0.7};
   const Chain was = host.chain;
-  const double twice = 1.5 * was.record().sums[0];
+  const double twice = 1.5 * ChainRecord::of(was).sums[0];
   host.chain.join(before, more, twice);
   EXPECT_DOUBLE_EQ(host.chain.energy(more), was.energy(before));
   EXPECT_EQ(host.chain.friction(), was.friction());
@@ -275,9 +277,9 @@ TEST(Chain, OtherDegreesOfFreedomLeaveItsEnergyAndItsFriction)
 TEST(Chain, WithoutDegreesOfFreedomNothingMoves)
 {
   Chain chain(3);
-  Chain::Record some = {};
+  ChainRecord some = {};
   some.y = {0.3, 0.2, 0.1, 7.0};
-  chain.restore(some);
+  some.restore(chain);
   EXPECT_TRUE(chain.advance({1.0, 0.0, 0.0, 1.0}, 0.0, 0.1, 8));
   EXPECT_EQ(chain.values(), some.y);
 }

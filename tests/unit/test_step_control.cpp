@@ -1,6 +1,7 @@
 /* A step and a number of values that adapt to the error: the rows, the estimates, the control law,
    and the results in the paper's cage. */
 
+#include "chain_record.h"
 #include "checks.h"
 #include "follow.h"
 #include "scenes.h"
@@ -98,13 +99,13 @@ std::array<double, 2> chain_estimate_over_error(int n, int more, double h, doubl
     Chain chain(1);
     double now = a;
     chain.seed(&now, 0, 0.0, 1);
-    Chain::Record known = chain.record();
+    ChainRecord known = ChainRecord::of(chain);
     known.known = values + 1;
     for (int k = 0; k <= values; ++k) {
       known.sums[k] = a * std::exp(-k * h);
       known.ages[k] = k * h;
     }
-    chain.restore(known);
+    known.restore(chain);
     double before = 0.0;
     for (int step = 1; step <= STEPS; ++step) {
       before = chain.friction() - xi((step - 1) * h);

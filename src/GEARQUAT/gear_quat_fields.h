@@ -1,0 +1,79 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* The numbers of a restart file besides the data of atoms.
+
+   An object with state has a function fields(Fields &), the only list of the members that decide
+   about later steps or outputs; it writes them and reads them.  tests/lammps/test_restart_state.py
+   names all other members, with the reason why they are in no file. */
+
+#ifndef GEAR_QUAT_FIELDS_H
+#define GEAR_QUAT_FIELDS_H
+
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace LAMMPS_NS::GearQuat {
+
+class Fields {
+ public:
+  using Numbers = std::vector<double>;
+
+  /// To write.
+  Fields() = default;
+  /// To read.
+  explicit Fields(Numbers numbers) : all(std::move(numbers)), is_file(true) {}
+
+  bool reads() const { return is_file; }
+  const Numbers &numbers() const { return all; }
+  /// True if all numbers have been read, and no more than these.
+  bool is_complete() const { return at == all.size(); }
+
+  /// Numbers, containers of members, and objects with fields().
+  template <class... Member> void operator()(Member &...members) { (visit(members), ...); }
+
+ private:
+  Numbers all;
+  bool is_file = false;
+  size_t at = 0;
+
+  template <class T> void visit(T &member)
+  {
+    if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
+      number(member);
+    else
+      members_of(member, 0);
+  }
+  template <class T> void number(T &member)
+  {
+    if (!is_file)
+      all.push_back((double) member);
+    else if (at++ < all.size())
+      member = (T) all[at - 1];
+  }
+  template <class T> auto members_of(T &object, int) -> decltype(object.fields(*this))
+  {
+    object.fields(*this);
+  }
+  template <class T> void members_of(T &container, long)
+  {
+    for (auto &one : container) visit(one);
+  }
+  void members_of(std::string &text, int)
+  {
+    double size = (double) text.size();
+    number(size);
+    const bool fits = size >= 0.0 && size <= (double) all.size() - (double) at;
+    if (is_file) text.resize(fits ? (size_t) size : 0);
+    if (is_file && !fits) at = all.size() + 1;    // the file is damaged
+    for (char &one : text) number(one);
+  }
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif

@@ -1,0 +1,237 @@
+"""All state is in a restart file: the state itself is compared, not only the trajectory after it.
+
+Every object lists the members that decide about later steps in one function fields(), by which files are written
+and read (gear_quat_fields.h).  A file that is read and written again at once has the same bits; `run 0` prints
+the same numbers, and so does each of the next steps.  Members that are in no list are named here, with the reason.
+"""
+
+import re
+import struct
+
+import pytest
+from pressed import REPULSIVE, pressed, trimers
+from running import ROOT
+from scenes import FORMULATIONS, one_after_the_other
+
+PACKAGE = ROOT / "src" / "GEARQUAT"
+MAGIC = struct.pack("d", float(int.from_bytes(b"gearquat", "big")))
+STEPS, MORE = 60, 20
+
+TEMP, SEPARATE = "temp 0.7 0.7 0.8", "temp 0.6 0.9 0.8 thermostat separate tchain 2"
+TOLERANCE = "tolerance 1e-6"
+MODES = [
+    "",
+    "values 7 compensate yes",
+    TOLERANCE,
+    TEMP,
+    SEPARATE,
+    f"{TEMP} {TOLERANCE}",
+    "isokinetic total",
+    "isokinetic separate rescale no",
+    "iso 0.3 0.3 1.0",
+    f"iso 0.3 0.9 1.0 {TEMP}",
+    f"aniso 0.3 0.3 1.0 {SEPARATE}",
+    f"x 0.3 0.9 1.0 y 0.5 -0.2 0.7 {SEPARATE} pchain 2",
+    f"iso 0.3 0.3 0.5 {TOLERANCE} energy",
+    f"aniso 0.3 0.3 0.5 {TEMP} {TOLERANCE}",
+    f"tri 0.3 0.3 1.0 {SEPARATE}",
+]
+CASES = [(f, mode) for f in FORMULATIONS for mode in MODES if f == "first" or "isokinetic" not in mode]
+SPAN = f"start 0 stop {STEPS + MORE}"
+
+
+@pytest.fixture(autouse=True)
+def data(tmp_path):
+    trimers(tmp_path / "data.trimers")
+    trimers(tmp_path / "data.tilted", change=((1, 0.05, 0), (0, 1, 0.03), (0, 0, 1)))
+
+
+def deck(words, run, file=None):
+    box = "read_data data.tilted" if "tri " in words else "read_data data.trimers"
+    return pressed(words, pair=REPULSIVE, thermo=1, run=run, box=f"read_restart {file}" if file else box)
+
+
+def block(path):
+    """The numbers of the fix in a restart file: count and numbers."""
+    content = path.read_bytes()
+    assert content.count(MAGIC) == 1
+    at = content.index(MAGIC) + 16
+    (count,) = struct.unpack_from("d", content, at)
+    return struct.unpack_from(f"{int(count) + 1}d", content, at)
+
+
+@pytest.mark.parametrize("formulation, mode", CASES)
+def test_all_state_is_written_and_read(lmp_tree, formulation, mode):
+    words = f"formulation {formulation} {mode}"
+    if "compensate" in mode and formulation == "first":
+        words += " passes 1"
+    on = f"run 0 {SPAN}\nrun {MORE} {SPAN}"
+    decks = [
+        deck(words, f"run {STEPS} {SPAN}\nwrite_restart one\n{on}"),
+        deck(words, f"write_restart two\n{on}", "one"),
+        deck(words, on, "two"),
+    ]
+    result = lmp_tree.succeed(one_after_the_other(decks))
+    one, two = (lmp_tree.folder / name for name in ("one", "two"))
+    assert block(one) == block(two)
+    assert len(block(one)) > 20
+    if "tri " not in mode:  # LAMMPS converts positions in a tilted box whenever it writes a file
+        assert one.read_bytes() == two.read_bytes()
+    first, *others = result.thermo
+    assert first["Step"][-1] == STEPS
+    assert len(others) == 6
+    for n, table in enumerate(others):
+        for column, right in others[n % 2].items():
+            assert table[column] == (pytest.approx(right, rel=1e-11, abs=1e-12) if "tri " in mode else right), column
+    assert "rebuilt" not in result.words
+
+
+# --- a barostat with another damping time -------------------------------------------------------
+
+
+@pytest.mark.parametrize("period, advised", [(0.6, False), (0.01, True)])
+def test_another_damping_time_is_a_reason_to_start(lmp_tree, period, advised):
+    words = f"iso 0.3 0.3 {{}} {TEMP}"
+    decks = [
+        deck(words.format(1.0), f"run {STEPS}\nwrite_restart one"),
+        deck(words.format(period), f"run 0\nwrite_restart two\nrun {MORE}", "one"),
+        deck(words.format(period), f"run {MORE}", "two"),
+    ]
+    said = "the barostat has another damping time than in the last steps; histories are rebuilt"
+    if not advised:
+        assert lmp_tree.succeed(one_after_the_other(decks)).words.count(said) == 2
+        return
+    result = lmp_tree.refuse(one_after_the_other(decks), "the box would oscillate by")
+    assert said in result.words
+    advice = float(re.search(r"use a Pdamp of ([\d.]+) or longer", result.errors[0]).group(1))
+    decks[1] = deck(words.format(advice), f"run {MORE}", "one")
+    lmp_tree.succeed(one_after_the_other(decks[:2]))
+
+
+# --- files of other releases --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("number, other", [(0, 1.0), (1, 6.0), (1, 99.0)])
+def test_files_of_other_releases_are_refused(lmp_tree, ranks, number, other):
+    """Files of 0.2.0 begin with the formulation, 0 or 1.  The remedy in the message helps."""
+    lmp_tree.succeed(deck(TEMP, "run 5\nwrite_restart one"))
+    file = lmp_tree.folder / "one"
+    content = file.read_bytes()
+    at = content.index(MAGIC) + 8 * number
+    file.write_bytes(content[:at] + struct.pack("d", other) + content[at + 8 :])
+    again = deck(TEMP, "run 5", "one")
+    result = lmp_tree.refuse(again, "are from another release of GEARQUAT", ranks=ranks)
+    assert len(set(result.errors)) == 1
+    assert "the data of fix move" in result.errors[0]
+    lmp_tree.succeed(re.sub(r"\bmove\b|(?<=f_)move", "other", again), ranks=ranks)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_damaged_data_are_refused(lmp_tree, ranks):
+    lmp_tree.succeed(deck(TEMP, "run 5\nwrite_restart one"))
+    file = lmp_tree.folder / "one"
+    content = file.read_bytes()
+    at = content.index(MAGIC) + 16
+    (count,) = struct.unpack_from("d", content, at)
+    file.write_bytes(content[:at] + struct.pack("d", count - 1.0) + content[at + 8 :])
+    message = "the data of fix move in the restart file are damaged"
+    lmp_tree.refuse(deck(TEMP, "run 5", "one"), message, ranks=ranks)
+
+
+# --- members that are in no list ----------------------------------------------------------------
+
+COMMAND, RUN, STEP = "from the command", "of a run or a start", "of a step"
+DERIVED, MESSAGES, OTHERS = "from members in the list", "for messages only", "other objects"
+#: the members of classes that are in no list; "classes": a class that has its own list elsewhere
+NOT_IN_A_FILE = {
+    "chain Chain": {COMMAND: "length", DERIVED: "begun", STEP: "latest width"},
+    "scalar ScalarHistory": {},
+    "cell CellHistory": {COMMAND: "n c weight", STEP: "total"},
+    "box Box": {COMMAND: "fixed", DERIVED: "shown reference_volume m inverse change inverse_change"},
+    "box_frequency BoxFrequency": {COMMAND: "fastest period", RUN: "since"},
+    "virial MolecularVirial": {COMMAND: "id", OTHERS: "sites"},
+    "time_step TimeStep": {STEP: "changing"},
+    "step_control Steady": {},
+    "isokinetic IsokineticConstraint": {
+        COMMAND: "scheme mode scales",
+        RUN: "heat_at_nodes",
+        STEP: "here sums alpha of_all factor",
+    },
+    "tolerance Tolerance": {
+        COMMAND: "control every_time",
+        OTHERS: "fix fleet bodies time_step",
+        DERIVED: "present order",
+        RUN: "repeat announced settled",
+        STEP: "predicted errors speed begun_with tries failed fresh",
+        MESSAGES: "warned_held",
+    },
+    "thermostat Thermostat": {
+        COMMAND: "words most_friction single_pass",
+        OTHERS: "fix",
+        DERIVED: "made waiting line damp_before freedoms total friction of_all",
+        RUN: "anew changes twice_at_nodes held",
+        STEP: "kept twice strong unit here same_bodies",
+        MESSAGES: "told warned warned_friction",
+    },
+    "barostat Barostat": {
+        COMMAND: "asked values_of_heat heat_coefficients changing_step",
+        DERIVED: "matrix rate of_all inverse",
+        RUN: "made_target made_rate longest_body strongest begun_box begun_matrix drive_of_smaller "
+        "cell_at_nodes twice_box_at_nodes heat_at_nodes held_box target_at_start",
+        STEP: "kept local_error kinetic friction_of_box tensor",
+        MESSAGES: "told_of_box warned_box warned_mesh",
+    },
+    "motion Motion": {
+        COMMAND: "masks",
+        OTHERS: "fix args fleet bodies ownership sites others",
+        RUN: "set_up vibrations chosen damping watches next_look of_file",
+        MESSAGES: "advised_step warned_pass warned_values warned_errors warned_friction",
+    },
+}
+
+
+def code(path):
+    """Without comments and initial values of members."""
+    text = re.sub(r"//.*", "", re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.S))
+    return re.sub(r"\s*=\s*({[^{}]*}|[^,;{}()]+(\([^()]*\))?)(?=[,;])", "", text)
+
+
+def inside(text, start):
+    """The text between the brace at the end of ``start``, a regular expression, and the matching brace."""
+    text, depth, end = re.split(start, text, maxsplit=1)[1], 1, 0
+    while depth:
+        depth += {"{": 1, "}": -1}.get(text[end], 0)
+        end += 1
+    return text[: end - 1]
+
+
+def members(header, name):
+    """The data members of a class, and the names in its list of fields."""
+    body = inside(code(PACKAGE / f"gear_quat_{header}.h"), rf"\b(?:class|struct) {name}\b[^;{{]*{{")
+    depth, level = 0, ""
+    for character in body:
+        depth -= character == "}"
+        level += character if depth == 0 else ""
+        depth += character == "{"
+    found = set()
+    for statement in re.split(r"[;}]|\b(?:public|private|protected):", level):
+        if "(" in statement or re.match(r"\s*(using|enum|friend|template|static|struct|class|$)", statement):
+            continue
+        while "<" in statement:
+            statement = re.sub(r"<[^<>]*>", "", statement)
+        found |= {re.findall(r"\w+", re.sub(r"\[.*", "", part))[-1] for part in statement.split(",")}
+    sources = "".join(map(code, sorted(PACKAGE.glob(f"gear_quat_{header}*.cpp"))))
+    in_source, in_class = rf"void {name}::fields\(.*?\)\s*{{", r"\bvoid fields\(.*?\)(?: override)?\s*{"
+    listed = inside(sources, in_source) if re.search(in_source, sources) else inside(body, in_class)
+    return found, set(re.findall(r"\w+", listed))
+
+
+@pytest.mark.parametrize("name", NOT_IN_A_FILE)
+def test_every_member_is_in_the_list_or_named_here(name):
+    found, listed = members(*name.split())
+    named = " ".join(NOT_IN_A_FILE[name].values()).split()
+    assert len(set(named)) == len(named)
+    assert found - listed - set(named) == set(), "put them into fields(), or name them here with the reason"
+    assert set(named) <= found
+    assert found & listed - set(named)
