@@ -8,6 +8,7 @@ import dumps
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from test_analysis_diffusion import bound
 
 from gearquat_analysis import averages, correlations
 from gearquat_analysis.report import average_lines, write_averages
@@ -75,6 +76,22 @@ def test_temperatures(resting):
     assert set(found) == set(expected)
     for name, value in expected.items():
         near(averages.of_series(found[name]), value)
+
+
+def test_the_difference_of_temperatures_has_its_own_error():
+    """At constant energy the two are anticorrelated: their errors in quadrature are too small."""
+    z, naive, poses = [], [], thermal(moments=np.array([3.0, 3.0, 0.0]))
+    poses.results = Results(**{name: values[:500] for name, values in vars(poses.results).items()})
+    for seed in range(40):
+        exchange = bound(np.random.default_rng(seed), 500, 1, 1.0)[:, 0, 0]
+        poses.results.ke_translation = np.outer(3.0 + 0.1 * exchange, np.full(BODIES, 0.65) * (1.0 - 1.0 / BODIES))
+        poses.results.ke_rotation = np.outer(2.0 - 0.1 * exchange, np.full(BODIES, 0.65))
+        known = {one.name: one for one in averages.averages(poses)[:3]}
+        one, *both = (known[name] for name in (averages.DIFFERENCE, "temperature of translation", "temperature of rotation"))
+        z.append(one.value / one.error)
+        naive.append(one.value / np.hypot(both[0].error, both[1].error))
+    z, naive = (np.sqrt(np.nanmean(np.square(values))) for values in (z, naive))
+    assert 0.7 < z < 1.4 and naive > 1.2 * z
 
 
 def test_without_a_moment_there_is_no_temperature():
@@ -275,9 +292,11 @@ def test_what_is_too_short_is_told(tmp_path):
     found = averages.averages(thermal())
     text = average_lines(found)
     assert "The temperature of translation is 1.3" in text and " ± " in text
-    assert "No " not in average_lines(found[:5])
+    assert "No " not in average_lines(found[:6])
     short = [*found[:1], averages.Average("correlation time", float("nan"), float("nan"), "", "it is short")]
     assert "No correlation time: it is short." in average_lines(short)
     write_averages(tmp_path / "a.csv", short)
     rows = (tmp_path / "a.csv").read_text().splitlines()
-    assert rows[0] == "average,value,standard error,unit,left out because" and rows[2] == "correlation time,,,,it is short"
+    slow = averages.Average("temperature of rotation", 0.1281, float("nan"), "K", "it drifts")
+    assert average_lines([slow]) == "The temperature of rotation is 0.1281 K, with an unknown error: it drifts."
+    assert rows[0] == "average,value,standard error,unit,error unknown because" and rows[2] == "correlation time,,,,it is short"

@@ -55,6 +55,7 @@ def found(motion, seed, *arguments):
         (brownian, (400, 50), 0.5),
         (langevin, (4000, 2, 5.0), 5.0),
         (langevin, (2000, 20, 5.0), 5.0),
+        (langevin, (800, 64, 5.0), 5.0),
         (hopping, (6000, 10, 0.05), 0.025),
     ],
 )
@@ -68,6 +69,14 @@ def test_errors_hold(motion, arguments, expected):
     if np.mean([one.error for one in known]) < 0.03 * expected:
         off = np.array([(one.value - 1.1 * expected) / one.error for one in known])
         assert np.sqrt(np.mean(off**2)) > MOST
+
+
+def test_errors_of_short_runs_hold():
+    """As in the tutorial: motion is diffusive only from a sixtieth of the run on, where no blocks have an error."""
+    time = 4.0
+    known = [one for one in (found(langevin, seed, 800, 64, time) for seed in range(60)) if not np.isnan(one.value)]
+    assert len(known) >= 55
+    assert 0.7 < np.sqrt(np.mean([((one.value - time) / one.error) ** 2 for one in known])) < 1.4
 
 
 def test_free_flight():

@@ -1,8 +1,8 @@
 """Averages over a run with standard errors: temperatures, the volume, diffusion, rotational correlation times.
 
 Each error rests on an assumption, which is checked: independent blocks for temperatures, a linear range of the
-mean-square displacement for diffusion, an exponential tail for correlation times.  If an assumption fails, the average
-is NaN, and ``why`` has the reason.  All functions take finished ``Poses``, which contain masses and moments.
+mean-square displacement for diffusion, an exponential tail for correlation times.  If an assumption fails, the error is
+NaN, and ``why`` has the reason; only means over all frames, such as temperatures, have a value then.  All functions take finished ``Poses``, which contain masses and moments.
 """
 
 import math
@@ -32,6 +32,8 @@ IN_PLANE = 1e-6
 #: value of the correlation at which its sum ends, lower values if the tail is not exponential there, and the multiple of
 #: this value at which the fit of the tail begins
 TAIL, LOWER, BEFORE_TAIL = 0.1, (0.05, 0.02), 3.0
+#: its error is from its own series, because at constant energy the two temperatures are anticorrelated
+DIFFERENCE = "temperature difference of translation minus rotation"
 #: fewest frames up to the end of the sum
 RESOLVED = 3
 #: the tail is compared with the exponential up to this multiple of the lag where it begins, and up to this fraction of a
@@ -41,7 +43,7 @@ LATER, OF_BLOCK, SIGNIFICANT, TOO_LARGE = 3, 0.8, 3.0, 0.05
 
 
 class Average(NamedTuple):
-    """An average over a run with its standard error; NaN, with the reason in ``why``, if an assumption of the error fails.
+    """An average over a run with its standard error, which is NaN, with the reason in ``why``, if its assumption fails.
 
     >>> from gearquat_analysis.averages import Average
     >>> Average("diffusion coefficient", 0.3124, 0.0153, "Å²/ps").text()
@@ -76,7 +78,7 @@ class Averages(list):
     >>> from gearquat_analysis import Poses, averages, open_dump
     >>> found = averages.averages(Poses(open_dump("nitrogen.dump").atoms).run(step=4))
     >>> found.to_dataframe()["name"][1], len(found)
-    ('temperature of rotation', 5)
+    ('temperature of rotation', 6)
     """
 
     def to_dataframe(self):
@@ -291,7 +293,8 @@ def _with_error(find, lag, whole, blocks, without, *more):
 def averages(poses):
     """All Averages that can be computed from finished ``Poses`` or ``TablePoses``.
 
-    Frames are weighted by time (``weights_of``).  If the box changes, the Averages include volume and density, and the
+    Frames are weighted by time (``weights_of``).  The difference of the temperatures of translation and rotation, zero in
+    equilibrium, has an error of its own.  If the box changes, the Averages include volume and density, and the
     diffusion coefficient describes motion relative to the box.  If frames are not evenly spaced in time, diffusion
     coefficients and correlation times are left out with a warning.  In a mixture each of the ``kinds`` has its own
     diffusion coefficient and correlation times.
@@ -301,9 +304,12 @@ def averages(poses):
     weights = weights_of(times)
     found = Averages()
     warm, box = temperatures(poses), of_box(poses)
+    if "rotation" in warm:
+        warm = {**warm, DIFFERENCE: warm["translation"] - warm["rotation"]}
     for name, series in warm.items():
         value, error, why = of_series(series, weights)
-        found.append(Average(f"temperature of {name}", value, error, poses.unit("temperature"), why))
+        name = name if name == DIFFERENCE else f"temperature of {name}"
+        found.append(Average(name, value, error, poses.unit("temperature"), why))
     for name, series in box.items():
         value, error, why = of_series(series, weights)
         found.append(Average(name, value, error, poses.unit(name), why))

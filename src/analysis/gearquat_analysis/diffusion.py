@@ -18,8 +18,9 @@ from .correlations import portions
 
 #: lags in units of the first lag of a range; the lags of the fit; the lag at which the exponent is taken
 LAGS, FITTED, MIDDLE = np.array([1, 2, 3, 4, 5, 6, 7, 8, 16]), slice(1, 8), 3
-#: least length of a run, in units of the first lag, for a range with a coefficient and for a range that is only tested
-LENGTH, LENGTH_LINEAR = 100, 32
+#: least length of a run, in units of the first lag, for a range with blocks, for one with a coefficient, and for one that
+#: is only tested
+LENGTH_BLOCKS, LENGTH, LENGTH_LINEAR = 100, 50, 32
 #: number of origins of time per first lag
 ORIGINS = 4
 #: least length of a block of the run, in units of the first lag, and the largest number of blocks
@@ -44,7 +45,7 @@ class Fit(NamedTuple):
     * ``square``: mean square in a direction at 8 times the first lag
     * ``linear``: True if the range is linear within errors
     * ``known``: True if it is linear and the errors are small enough
-    * ``blocks``: number of blocks
+    * ``long``: True if the run is long enough for an error
     * ``together``: factor by which errors are larger because bodies are not independent
     """
 
@@ -54,13 +55,13 @@ class Fit(NamedTuple):
     exponent: float
     square: float
     linear: bool
-    blocks: int
+    long: bool
     together: float
 
     @property
     def known(self):
         least, most = EXPONENTS
-        return self.blocks > 0 and self.linear and self.error < PRECISION * self.value and least <= self.exponent <= most
+        return self.long and self.linear and self.error < PRECISION * self.value and least <= self.exponent <= most
 
 
 def diffusion(time, center, dimensions=3):
@@ -68,9 +69,11 @@ def diffusion(time, center, dimensions=3):
 
     It is a sixth (in two ``dimensions``, a fourth) of the slope of the mean-square displacement.  The slope is taken
     from the earliest range of lags such that this range and all later ranges are linear.  The error is the largest of
-    three: the scatter of blocks of the run, the scatter of bodies, and the error for Brownian motion.  Half of the
-    largest difference from ranges that begin up to twice as late is added in quadrature.  The coefficient is NaN if no
-    range with a first lag below a hundredth of the run is linear, if the error is above a fifth of the coefficient, or
+    three: the scatter of blocks of the run, the scatter of bodies, and the error for Brownian motion.  With a first lag
+    above a hundredth of the run there are no blocks, and the last two errors are multiplied by the factor by which blocks
+    increased them at the latest range with blocks.  Half of the largest difference from ranges that begin up to twice as
+    late is added in quadrature.  The coefficient is NaN if no range with a first lag below a fiftieth of the run is
+    linear, if the error is above a fifth of the coefficient, or
     if bodies are confined.  ``time`` (F,) is evenly spaced.
 
     >>> import numpy as np
@@ -82,15 +85,15 @@ def diffusion(time, center, dimensions=3):
     'the mean-square displacement is not linear up to a quarter of the run'
     """
     frames = len(time)
-    if frames <= LENGTH:
-        return Estimate.missing(f"{frames} frames are too few: {LENGTH + 1} are required")
+    if frames <= LENGTH_BLOCKS:
+        return Estimate.missing(f"{frames} frames are too few: {LENGTH_BLOCKS + 1} are required")
     fits = _fits(center, dimensions)
     failing = [k for k, fit in enumerate(fits) if not fit.linear]
     later = fits[failing[-1] + 1 :] if failing else fits
     if not later:
         return Estimate.missing("the mean-square displacement is not linear up to a quarter of the run")
     known = [fit for fit in later if fit.known]
-    if not known and not any(fit.blocks for fit in later):
+    if not known and not any(fit.long for fit in later):
         return Estimate.missing("the mean-square displacement becomes linear too late for an error")
     if not known:
         return Estimate.missing("errors are too large to tell whether the mean-square displacement is linear")
@@ -134,7 +137,7 @@ def _stride(first):
 def _squares(x, first):
     """Mean-square displacements (9, b) of x (n, b, 3) at the lags of a range, and their sums over bodies in each block (9, N)."""
     length = len(x) - 1
-    number = min(MOST_BLOCKS, length // (BLOCK * first)) if length >= LENGTH * first else 0
+    number = min(MOST_BLOCKS, length // (BLOCK * first)) if length >= LENGTH_BLOCKS * first else 0
     ends = np.linspace(0, length, number + 1).astype(int)
     means, blocks = np.empty((len(LAGS), x.shape[1])), np.empty((len(LAGS), len(ends) - 1))
     for row, lag in enumerate(LAGS * first):
@@ -147,12 +150,12 @@ def _squares(x, first):
 
 def _fit(first, frames, of_bodies, of_blocks, dimensions, together):
     """Fit of a range, from the mean squares per direction of bodies (9, B) and of blocks (9, N)."""
-    stride, blocks = _stride(first), of_blocks.shape[1]
+    stride, long = _stride(first), frames - 1 >= LENGTH * first
     steps, per_lag = (frames - 1) // stride, first // stride
     weights, mean = _weights(steps, per_lag), of_bodies.mean(axis=1)
     slope, through = float(weights[0] @ mean), mean[MIDDLE] / LAGS[MIDDLE]  # per first lag
     if not through > 0.0:
-        return Fit(first, 0.0, math.inf, 0.0, 0.0, False, blocks, together)
+        return Fit(first, 0.0, math.inf, 0.0, 0.0, False, long, together)
     number = of_bodies.shape[1]
     errors = [max(slope, through) * _brownian_errors(steps, per_lag) / math.sqrt(number * dimensions)]
     if number > 1:
@@ -160,7 +163,7 @@ def _fit(first, frames, of_bodies, of_blocks, dimensions, together):
     if number >= FEWEST_BODIES:
         errors.append(scatter((weights @ of_bodies).T))
     errors = np.max(errors, axis=0)
-    if blocks:
+    if of_blocks.shape[1]:
         of_run = scatter((weights @ of_blocks).T)
         together = max(1.0, of_run[0] / errors[0])
         errors = np.maximum(errors, of_run)
@@ -171,7 +174,7 @@ def _fit(first, frames, of_bodies, of_blocks, dimensions, together):
     linear = (np.abs(weights[1:] @ mean) <= SAME * of_differences).all()
     linear &= exponent + uncertain >= EXPONENTS[0] and exponent - uncertain <= EXPONENTS[1]
     linear |= error > VAGUE * through
-    return Fit(first, slope / (2.0 * first), error / (2.0 * first), exponent, mean[7], bool(linear), blocks, together)
+    return Fit(first, slope / (2.0 * first), error / (2.0 * first), exponent, mean[7], bool(linear), long, together)
 
 
 @functools.lru_cache(maxsize=64)

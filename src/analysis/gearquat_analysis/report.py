@@ -42,16 +42,20 @@ def write_stays(path, stays, ids):
 
 
 def write_averages(path, averages):
-    """Write a row for each Average: name, value, standard error, unit, and the reason if it is left out."""
+    """Write a row for each Average: name, value, standard error, unit, and the reason if an error is unknown."""
     blank = [[*row[:1], *("" if np.isnan(x) else x for x in row[1:3]), *row[3:]] for row in averages]
-    write_rows(path, ["average", "value", "standard error", "unit", "left out because"], blank)
+    write_rows(path, ["average", "value", "standard error", "unit", "error unknown because"], blank)
 
 
 def average_lines(averages):
-    """Text for a terminal: a line for each known Average, and a line for each reason why averages are missing."""
-    lines, missing = [f"The {one.name} is {one.text()}." for one in averages if one.known], {}
+    """Text for a terminal: a line for each Average with a value, and a line for each reason why others are missing."""
+    lines, missing = [], {}
     for one in averages:
-        if not one.known:
+        if one.known:
+            lines.append(f"The {one.name} is {one.text()}.")
+        elif np.isfinite(one.value):
+            lines.append(f"The {one.name} is {f'{one.value:.4g} {one.unit}'.rstrip()}, with an unknown error: {one.why}.")
+        else:
             missing.setdefault(one.why, []).append(one.name)
     for why, names in missing.items():
         lines.append(f"No {' and no '.join(names)}: {why or 'the run is too short'}.")
