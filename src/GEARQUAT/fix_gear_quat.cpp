@@ -193,7 +193,7 @@ void FixGearQuat::setup_pre_exchange()
     motion->forget("Fix gear/quat: the box was remapped since the last run; histories are rebuilt");
   if (step->coupling && !step->coupling->knows_box())
     motion->forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
-  if (reported) driven_box->pass_faces_before_run();    // there was a run
+  driven_box->begin_setup();
 }
 
 /// Bodies keep their state between runs, and adopt changes that the user has made in the atoms.
@@ -202,12 +202,15 @@ void FixGearQuat::setup_pre_neighbor()
   ownership->check_whole();
   ownership->choose_large();
   update_bodies();
+  driven_box->follow_images();
   if (met_atoms && !minimization->is_on()) motion->take_velocities(update->ntimestep, false);
   const bool from_atoms = args->infile.empty() && !any_differs(stated);
   const bool takes_over = from_atoms && (args->reinit || !met_atoms);
   if (!takes_over && !minimization->is_on()) sites->warn_of_other_places();
   if (takes_over && !sites->match_bodies()) {
+    sites->take_out_flow();
     ownership->recreate();
+    driven_box->note_images();
     update_bodies();
     motion->forget("Fix gear/quat: atoms were changed since the last run; bodies are rebuilt from "
                    "them");
@@ -253,13 +256,13 @@ void FixGearQuat::show_bodies()
 void FixGearQuat::pre_exchange()
 {
   if (step->coupling) step->coupling->flip_box();
-  driven_box->meet_faces();
 }
 
 /// Atoms were exchanged, and other fixes may have inserted or removed bodies.
 void FixGearQuat::pre_neighbor()
 {
   update_bodies();
+  driven_box->follow_images();
   if (driven_box->any()) ownership->note_box();    // fix deform may have flipped the box
   count_rows();
 }

@@ -28,10 +28,12 @@ void Bodies::set_scheme(const Scheme &other)
 
 void Bodies::resize(int nhere)
 {
+  ++nlayouts;
   body.resize(nhere);
   state.resize(nhere);
   load.resize(nhere);
   last.resize(nhere);
+  frame.resize(nhere);
 }
 
 void Bodies::drop_copies()
@@ -77,6 +79,7 @@ void Bodies::remove_owned(int ibody)
 
 void Bodies::permute(const std::vector<int> &from)
 {
+  ++nlayouts;
   const auto permute_column = [&from](auto &column, int width) {
     auto before = column;
     for (size_t n = 0; n < from.size(); ++n)
@@ -93,7 +96,6 @@ void Bodies::clear()
 {
   nown = 0;
   drop_copies();
-  frame.clear();
 }
 
 void Bodies::set_number(bigint all)
@@ -105,7 +107,6 @@ void Bodies::set_number(bigint all)
 void Bodies::list()
 {
   list_bodies();
-  frame.resize(state.size());
   for (int ibody = 0; ibody < nhere(); ++ibody) update_frame(ibody);
 }
 

@@ -23,7 +23,9 @@
 #include "lmptype.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
@@ -38,6 +40,9 @@ struct Body {
   int fresh;        ///< inserted in this step: no history yet
   int large;        ///< on several ranks: some sites have no ghost of the owner atom
   Mask off;         ///< components of the load that are turned off
+  /// With a box that another fix changes: the periodic image of the owner atom, from which the
+  /// center is unwrapped, and with fix deform remap v the image that has the velocity.
+  std::array<int, 3> image;
 
   /// Displacement per radian of the outermost part of the body, a site or a part of a solid.
   double reach() const
@@ -67,6 +72,8 @@ class Bodies {
   bigint number() const { return nbodies; }
   /// The number of insertions and removals, the same on all ranks.
   int changes() const { return nchanges; }
+  /// Changes whenever an index may belong to another body than before; see Column.
+  unsigned layout() const { return nlayouts; }
 
   // bodies that this rank moves, by the work in a step; large bodies last and in the same order on
   // all ranks; valid until atoms are exchanged
@@ -161,6 +168,7 @@ class Bodies {
   int nown = 0, nmove = 0;
   bigint nbodies = 0;
   int nchanges = 0;    ///< of nbodies, insertions and removals
+  unsigned nlayouts = 0;
   bool copies = false;
 
   std::vector<Body> body;
@@ -172,6 +180,48 @@ class Bodies {
 
   void resize(int nhere);
   void list_bodies();
+};
+
+/// Scratch with an element for each body, outside of the store.  It does not follow bodies to other
+/// indices or ranks, so a use after such a change ends LAMMPS.
+template <class T> class Column {
+ public:
+  explicit Column(const Bodies &bodies) : bodies(&bodies) {}
+
+  /// n elements for the present bodies; elements of an earlier use may keep their values.
+  void begin(int n)
+  {
+    values.resize(n);
+    layout = bodies->layout();
+  }
+  T &operator[](int ibody)
+  {
+    check();
+    return values[ibody];
+  }
+  const T &operator[](int ibody) const
+  {
+    check();
+    return values[ibody];
+  }
+  /// All elements.
+  std::vector<T> &all()
+  {
+    check();
+    return values;
+  }
+  double memory_usage() const { return values.capacity() * sizeof(T); }
+
+ private:
+  const Bodies *bodies;
+  unsigned layout = 0;
+  std::vector<T> values;
+
+  void check() const
+  {
+    if (layout != bodies->layout())
+      throw std::logic_error("fix gear/quat: data of bodies were used after their indices changed");
+  }
 };
 
 }    // namespace LAMMPS_NS::GearQuat

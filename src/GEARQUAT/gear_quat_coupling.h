@@ -45,7 +45,7 @@ struct StartNodes {
 
 class Coupling : protected Pointers {
  public:
-  Coupling(LAMMPS *lmp, Bodies &bodies) : Pointers(lmp), bodies(bodies) {}
+  Coupling(LAMMPS *lmp, Bodies &bodies) : Pointers(lmp), bodies(bodies), pending(bodies) {}
 
   // before a run
 
@@ -206,7 +206,7 @@ class Coupling : protected Pointers {
   }
 
  private:
-  std::vector<Integrator::Pending> pending;
+  Column<Integrator::Pending> pending;    ///< in correct_by_passes()
 };
 
 /// The load on a body: after measure(), if there is a coupling.
@@ -224,7 +224,7 @@ inline BodyState scaled_of(const Bodies &bodies, const Coupling *coupling, int i
 template <class Law>
 void Coupling::correct_by_passes(Law &law, const Integrator &integrator, int passes)
 {
-  pending.resize(bodies.nmoved());
+  pending.begin(bodies.nmoved());
   law.begin_passes(integrator);
   for_moved([&](int ibody) {
     Load masked;

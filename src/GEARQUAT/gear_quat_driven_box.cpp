@@ -93,7 +93,7 @@ void DrivenBox::drive(Fix *deform)
     Fields kept;
     if (step.coupling) step.coupling->fields(kept);
     auto made = deform
-        ? std::make_unique<DrivenCell>(lmp, fix, bodies, args.thermostat, step.scheme(), images)
+        ? std::make_unique<DrivenCell>(lmp, fix, bodies, args.thermostat, step.scheme())
         : nullptr;
     cell = made.get();
     step.set_coupling(made ? std::move(made) : make_coupling(lmp, fix, args, bodies, sites));
@@ -166,38 +166,6 @@ void DrivenBox::place_sites()
    atoms do not move
 ------------------------------------------------------------------------- */
 
-/// The displacement for this number of periods of a box.
-static void through(const double *h, const double *periods, double *way)
-{
-  way[0] = h[0] * periods[0] + h[5] * periods[1] + h[4] * periods[2];
-  way[1] = h[1] * periods[1] + h[3] * periods[2];
-  way[2] = h[2] * periods[2];
-}
-
-/// Owned bodies have their values; copies of large bodies receive the values of their owners.
-void DrivenBox::share(std::vector<Vector> &of_moved) const
-{
-  if (bodies.large.empty()) return;
-  std::vector<double> here(3 * bodies.large.size(), 0.0), all(here.size());
-  for (size_t n = 0; n < bodies.large.size(); ++n)
-    if (bodies.large[n] < bodies.nowned())
-      std::copy_n(of_moved[bodies.large[n]].data(), 3, &here[3 * n]);
-  reduce(MPI_SUM, here.data(), all.data(), here.size(), world);
-  for (size_t n = 0; n < bodies.large.size(); ++n)
-    std::copy_n(&all[3 * n], 3, of_moved[bodies.large[n]].data());
-}
-
-std::vector<DrivenBox::Vector> DrivenBox::present_images()
-{
-  std::vector<Vector> found(bodies.nmoved(), Vector{});
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const auto periods = sites.image_of({ownership.owner_of(ibody), ibody, {}});
-    for (int k = 0; k < 3; ++k) found[ibody][k] = periods[k];
-  }
-  share(found);
-  return found;
-}
-
 /// Follows the box at the beginning or end of a run, or after a discontinuity of the box.
 void DrivenBox::follow()
 {
@@ -220,101 +188,85 @@ void DrivenBox::follow(const double *h, const double *corner)
 {
   const auto &box = ownership.box();
   const bool changed = !std::equal(h, h + 6, box.begin());
-  if (changed || domain->deform_vremap || cell) images = present_images();
   if (!changed) return;
   double change[6], way[3];
   for (int k = 0; k < 6; ++k) change[k] = h[k] - box[k];
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    through(change, images[ibody].data(), way);
+    through(change, bodies.body_at(ibody).image.data(), way);
     move_center(ibody, way);
   }
   ownership.note_box(h, corner);
 }
 
-/// The periods by which LAMMPS is going to wrap this position, by the same comparisons.
-static void wraps_of(Domain *domain, double *x, double *wraps)
+/// The body keeps its velocity relative to the faces that its owner atom has crossed since the last
+/// call, also if fix deform has flipped the box.  images: of the owner atom, now.
+void DrivenBox::pass_faces(int ibody, const double *images)
 {
-  double fraction[3];
-  if (domain->triclinic) domain->x2lamda(x, fraction);
-  const double *place = domain->triclinic ? fraction : x;
-  const double *low = domain->triclinic ? domain->boxlo_lamda : domain->boxlo;
-  const double *high = domain->triclinic ? domain->boxhi_lamda : domain->boxhi;
-  for (int k = 0; k < 3; ++k) {
-    wraps[k] = 0.0;
-    if (!domain->periodicity[k]) continue;
-    if (place[k] < low[k]) wraps[k] = -1.0;
-    if (place[k] >= high[k]) wraps[k] = 1.0;
-  }
-}
-
-/// The change of the images of owner atoms, in periods, since follow(), including the next
-/// wrapping.
-std::vector<DrivenBox::Vector> DrivenBox::passed_faces()
-{
-  const auto now = present_images();
-  const double *before = ownership.box().data();
-  std::vector<Vector> passed(bodies.nmoved(), Vector{});
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const int owner = ownership.owner_of(ibody);
-    if (!(atom->mask[owner] & domain->deform_groupbit)) continue;
-    double away[2][3], periods[3], wraps[3];
-    through(before, images[ibody].data(), away[0]);
-    through(domain->h, now[ibody].data(), away[1]);    // fix deform may have flipped the box
-    for (int k = 0; k < 3; ++k) away[1][k] -= away[0][k];
-    to_periods(domain, away[1], periods);
-    wraps_of(domain, atom->x[owner], wraps);
-    for (int k = 0; k < 3; ++k) passed[ibody][k] = std::round(periods[k]) + wraps[k];
-  }
-  share(passed);
-  return passed;
-}
-
-/// Velocity changes of bodies, by the atom IDs of owned bodies' owner atoms.
-std::vector<DrivenBox::Passage> DrivenBox::pass_faces()
-{
-  std::vector<Passage> passages;
-  if (!driven || !domain->deform_vremap) return passages;
-  const auto passed = passed_faces();
-  const double *rate = cell && step.is_within() ? cell->rate_of_faces().m.data() : domain->h_rate;
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    Passage one = {};
-    through(rate, passed[ibody].data(), one.velocity);
-    if (dot3(one.velocity, one.velocity) == 0.0) continue;
-    for (double &component : one.velocity) component = -component;
-    add_velocity(ibody, one.velocity);
-    if (ibody >= bodies.nowned()) continue;
-    one.owner = atom->tag[ownership.owner_of(ibody)];
-    passages.push_back(one);
-  }
-  return passages;
-}
-
-void DrivenBox::add_velocity(int ibody, const double *velocity)
-{
-  double *of_state = bodies.change_state(ibody).velocity;
-  for (int k = 0; k < 3; ++k) of_state[k] += velocity[k];
-  if (!step.started) return;
+  const auto *rates = sites.rates_of_faces().data();
+  if (step.is_within()) rates = cell ? cell->rate_of_faces().m.data() : domain->h_rate;
+  double away[2][3], periods[3], velocity[3];
+  through(ownership.box().data(), bodies.body_at(ibody).image.data(), away[0]);
+  through(domain->h, images, away[1]);
+  for (int k = 0; k < 3; ++k) away[1][k] = away[0][k] - away[1][k];
+  to_periods(domain, away[1], periods);
+  for (double &number : periods) number = std::round(number);
+  through(rates, periods, velocity);
+  add3(velocity, bodies.change_state(ibody).velocity);
+  if (!step.started || ibody >= bodies.nmoved()) return;
   const Scheme &scheme = step.scheme();
-  double *rows = bodies.history(ibody), *rates = rows + scheme.width() + Scheme::POSITION;
-  for (int k = 0; k < 3; ++k) rates[k] += step.length() * velocity[k];
+  double *rows = bodies.history(ibody), *first = rows + scheme.width() + Scheme::POSITION;
+  for (int k = 0; k < 3; ++k) first[k] += step.length() * velocity[k];
   if (!scheme.first()) return;
   const double mass = bodies.rigid_of(ibody).mass;
   for (int k = 0; k < 3; ++k) rows[Scheme::MOMENTUM + k] += mass * velocity[k];
 }
 
-/// LAMMPS would change the velocities of the atoms of a body one by one, so they are wrapped here.
-void DrivenBox::pass_faces_before_run()
+/// Every rank changes the same body in the same way.
+void DrivenBox::follow_images()
 {
+  if (!driven) return;
+  std::vector<Load> found(bodies.nhere());    // images, and whether faces change the velocity
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const int owner = ownership.owner_of(ibody);
+    const auto image = sites.image_of({owner, ibody, {}});
+    std::copy_n(image.begin(), 3, found[ibody].force);
+    const bool passes = domain->deform_vremap && !bodies.body_at(ibody).fresh &&
+        (atom->mask[owner] & domain->deform_groupbit);
+    found[ibody].torque_space[0] = passes;
+  }
+  if (bodies.have_copies()) {
+    ownership.sum(found);
+    ownership.spread(found);
+  }
+  for (int ibody = 0; ibody < bodies.nhere(); ++ibody) {
+    if (found[ibody].torque_space[0] != 0.0) pass_faces(ibody, found[ibody].force);
+    std::copy_n(found[ibody].force, 3, bodies.change_body(ibody).image.begin());
+  }
+}
+
+void DrivenBox::note_images()
+{
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    bodies.change_body(ibody).image = sites.image_of({ownership.owner_of(ibody), ibody, {}});
+}
+
+/// LAMMPS would wrap the atoms of bodies with the present motion of the faces, instead of the motion
+/// with which their velocities were placed.
+void DrivenBox::begin_setup()
+{
+  if (!driven) return;
+  note_images();
   follow();
-  if (!driven || !domain->deform_vremap) return;
-  auto mine = pass_faces();
-  const auto passages = gather_sorted(mine, world);
+  if (!domain->deform_vremap) return;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!ownership.in_body(i)) continue;
+    auto passed = periods_of(atom->image[i]);
     domain->remap(atom->x[i], atom->image[i]);
-    for (const Passage &one : passages)
-      if (one.owner == ownership.owner_tags()[i])
-        for (int k = 0; k < 3; ++k) atom->v[i][k] += one.velocity[k];
+    const auto now = periods_of(atom->image[i]);
+    for (int k = 0; k < 3; ++k) passed[k] -= now[k];
+    double flow[3];
+    through(sites.rates_of_faces().data(), passed.data(), flow);
+    add3(flow, atom->v[i]);
   }
 }
 

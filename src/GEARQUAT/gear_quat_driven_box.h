@@ -10,8 +10,8 @@
 
    If the box changes without a remap, atoms do not move.  The center of mass of a body, which is
    unwrapped, stays with its owner atom, and the other images of the body move with the box.  With
-   fix deform remap v a body that crosses a face of the box gets the velocity of the image beyond
-   it, like LAMMPS' atoms. */
+   fix deform remap v a body gets the velocity of the image beyond a face when its owner atom
+   crosses it, and each atom has the velocity of its own image, like LAMMPS' atoms. */
 
 #ifndef LMP_GEAR_QUAT_DRIVEN_BOX_H
 #define LMP_GEAR_QUAT_DRIVEN_BOX_H
@@ -58,10 +58,12 @@ class DrivenBox : protected Pointers {
   void follow();
   /// Called before a step, for the same changes of the box.
   void begin_step();
-  /// Before atoms are wrapped and exchanged in a step: fix deform remap v.  Collective.
-  void meet_faces() { pass_faces(); }
-  /// Called in LAMMPS' setup, where atoms get the velocities of bodies again.  Collective.
-  void pass_faces_before_run();
+  /// Called in LAMMPS' setup, before atoms are wrapped.
+  void begin_setup();
+  /// Called when bodies were made again.  Local.
+  void note_images();
+  /// Called when atoms were wrapped and exchanged, and bodies found again.  Collective.
+  void follow_images();
   /// Called at the end of a run, when sites are placed in the last box.  Collective.
   void end_run();
 
@@ -80,22 +82,7 @@ class DrivenBox : protected Pointers {
   void follow(const double *h, const double *corner);
   void drive(Fix *deform);
 
-  using Vector = std::array<double, 3>;
-  std::vector<Vector>
-      images;    ///< periodic images of the owner atoms of moved bodies, in follow()
-
-  /// A velocity that a body gets beyond a face.
-  struct Passage {
-    tagint owner;    ///< atom ID
-    double velocity[3];
-    bool operator<(const Passage &other) const { return owner < other.owner; }
-  };
-
-  std::vector<Vector> present_images();
-  std::vector<Vector> passed_faces();
-  std::vector<Passage> pass_faces();
-  void add_velocity(int ibody, const double *velocity);
-  void share(std::vector<Vector> &of_moved) const;
+  void pass_faces(int ibody, const double *images);
   void remap_centers();
   void move_center(int ibody, const double *way);
   void place_sites();

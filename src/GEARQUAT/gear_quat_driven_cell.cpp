@@ -32,9 +32,9 @@ static ThermostatWords words_of(const ThermostatWords &words)
 }
 
 DrivenCell::DrivenCell(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
-                       const Scheme &scheme, const Images &images) :
+                       const Scheme &scheme) :
     Thermostat(lmp, fix, bodies, words_of(words), scheme),
-    scheme(scheme), images(images), matrix(Upper::one()), inverse(Upper::one())
+    scheme(scheme), matrix(Upper::one()), inverse(Upper::one())
 {
 }
 
@@ -217,11 +217,10 @@ void DrivenCell::enter_node(const StartNodes &nodes, int node)
       to_space(state);
       return;
     }
-    const double *periods = images[ibody].data();
     const Upper change = shown.edges() - reference.edges();
     double way[3];
-    change.times(periods, way);
-    for (int k = 0; k < 3; ++k) state.center[k] += way[k];
+    through(change.m.data(), bodies.body_at(ibody).image.data(), way);
+    add3(way, state.center);
   });
 }
 

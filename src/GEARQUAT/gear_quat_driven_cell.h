@@ -41,10 +41,8 @@ class DrivenCell : public Thermostat {
     }
   };
 
-  using Images = std::vector<std::array<double, 3>>;
-  /// images: periodic images of the owner atoms of moved bodies, when the start begins.
   DrivenCell(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
-             const Scheme &scheme, const Images &images);
+             const Scheme &scheme);
 
   /// deform: the fix that moves the box in this run.
   void obey(Fix *deform) { driver = deform; }
@@ -99,7 +97,6 @@ class DrivenCell : public Thermostat {
   static constexpr int PAST = KNOWN - 1, AHEAD = PAST / 2;
 
   Scheme scheme;
-  const Images &images;
   Fix *driver = nullptr;
   bool asking = false;
   bool remaps = false;                         ///< atoms are remapped with the box

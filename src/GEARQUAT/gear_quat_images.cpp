@@ -29,12 +29,10 @@ void GearQuat::to_periods(const Domain *domain, const double *way, double *perio
   periods[2] = to_box[2] * way[2];
 }
 
-/// The displacement for this number of periods of a box.
-static void through(const double *box, const double *periods, double *way)
+std::array<int, 3> GearQuat::periods_of(imageint flags)
 {
-  way[0] = box[0] * periods[0] + box[5] * periods[1] + box[4] * periods[2];
-  way[1] = box[1] * periods[1] + box[3] * periods[2];
-  way[2] = box[2] * periods[2];
+  return {(int) (flags & IMGMASK) - IMGMAX, (int) (flags >> IMGBITS & IMGMASK) - IMGMAX,
+          (int) (flags >> IMG2BITS) - IMGMAX};
 }
 
 static bool is_periodic(const Domain *domain, int direction)

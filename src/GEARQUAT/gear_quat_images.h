@@ -9,6 +9,10 @@
 #ifndef LMP_GEAR_QUAT_IMAGES_H
 #define LMP_GEAR_QUAT_IMAGES_H
 
+#include "lmptype.h"
+
+#include <array>
+
 namespace LAMMPS_NS {
 class Domain;
 }    // namespace LAMMPS_NS
@@ -41,6 +45,18 @@ void follow_box(const Domain *domain, const double *box_before, const double *po
 
 /// Converts a displacement (3) to units of the periods.
 void to_periods(const Domain *domain, const double *way, double *periods);
+
+/// The displacement for this number of periods of a box, h as in Domain::h, with the operations of
+/// Domain::unmap(); or, from the rates of h, its velocity.
+template <class Number> void through(const double *h, const Number *periods, double *way)
+{
+  way[0] = h[0] * periods[0] + h[5] * periods[1] + h[4] * periods[2];
+  way[1] = h[1] * periods[1] + h[3] * periods[2];
+  way[2] = h[2] * periods[2];
+}
+
+/// The periods between the wrapped and the unwrapped position of an atom with these flags.
+std::array<int, 3> periods_of(imageint flags);
 
 }    // namespace LAMMPS_NS::GearQuat
 

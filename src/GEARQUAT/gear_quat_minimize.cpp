@@ -36,7 +36,10 @@ void Minimization::init()
 /// For nearest_twist() and nearest_move(): sum of arms d, and of their products.
 void Minimization::measure()
 {
-  for (auto &column : moments) column.assign(bodies.nhere(), Load());
+  for (auto &column : moments) {
+    column.begin(bodies.nhere());
+    std::fill(column.all().begin(), column.all().end(), Load());
+  }
   for (const Site &site : sites) {
     const double *d = site.arm_body;
     Load &first = moments[0][site.body], &second = moments[1][site.body];
@@ -47,7 +50,7 @@ void Minimization::measure()
     second.force[2] += d[0] * d[1];
   }
   if (!bodies.have_copies()) return;
-  for (auto &column : moments) ownership.sum(column);
+  for (auto &column : moments) ownership.sum(column.all());
 }
 
 Arms Minimization::arms_of(int ibody) const

@@ -27,7 +27,8 @@ namespace LAMMPS_NS::GearQuat {
 class Minimization : protected Pointers {
  public:
   Minimization(LAMMPS *lmp, Bodies &bodies, Ownership &ownership, Sites &sites) :
-      Pointers(lmp), bodies(bodies), ownership(ownership), sites(sites)
+      Pointers(lmp), bodies(bodies), ownership(ownership),
+      sites(sites), moments{Column<Load>(bodies), Column<Load>(bodies)}
   {
   }
 
@@ -61,7 +62,7 @@ class Minimization : protected Pointers {
   Ownership &ownership;
   Sites &sites;
   bool on = false, fitted = false, warned = false;
-  std::vector<Load> moments[2];    ///< sums over the sites of all bodies here, along their axes
+  Column<Load> moments[2];    ///< sums over the sites of all bodies here, along their axes
 
   Arms arms_of(int ibody) const;
   double *stored(int ibody) { return bodies.history(ibody); }

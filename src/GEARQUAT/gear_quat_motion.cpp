@@ -402,7 +402,7 @@ std::vector<std::string> Motion::other_settings(const Settings &mine) const
 
 void Motion::fields(Fields &v)
 {
-  v(step.time_step, edge_rate, movers);
+  v(step.time_step, edge_rate, movers, sites);
   if (step.tolerance) step.tolerance->fields(v);
   if (step.coupling) step.coupling->fields(v);
 }

@@ -194,7 +194,7 @@ class Ownership : protected Pointers {
   static constexpr int ATOM_SIZE = 6;
   static constexpr int STATE_SIZE = sizeof(BodyState) / sizeof(double);
   static constexpr int LOAD_SIZE = sizeof(Load) / sizeof(double);
-  static constexpr int BODY_SIZE = 11 + STATE_SIZE;
+  static constexpr int BODY_SIZE = 14 + STATE_SIZE;
   static constexpr int LAST_SIZE = sizeof(Correction) / sizeof(double);
 
   enum class Message { GHOSTS, STATES, LOADS, LABELS };

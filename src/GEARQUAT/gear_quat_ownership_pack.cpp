@@ -94,6 +94,7 @@ int Ownership::pack_body(int ibody, double *buf) const
   buf[m++] = body.extent;
   buf[m++] = body.rigid.mass;
   for (double moment : body.rigid.inertia) buf[m++] = moment;
+  for (int periods : body.image) buf[m++] = periods;
   std::memcpy(buf + m, &bodies.state_of(ibody), sizeof(BodyState));
   return BODY_SIZE;
 }
@@ -111,6 +112,7 @@ int Ownership::unpack_body(const double *buf, int ibody)
   body.extent = buf[m++];
   body.rigid.mass = buf[m++];
   for (double &moment : body.rigid.inertia) moment = buf[m++];
+  for (int &periods : body.image) periods = (int) buf[m++];
   std::memcpy(&bodies.change_state(ibody), buf + m, sizeof(BodyState));
   return BODY_SIZE;
 }

@@ -29,17 +29,6 @@ static double *first_of(double **vectors)
   return vectors ? vectors[0] : nullptr;
 }
 
-/// The displacement for this number of periods of the present box, with the operations of
-/// Domain::unmap().
-static void through(const Domain *domain, const int *periods, double *way)
-{
-  const double *h = domain->h;
-  for (int k = 0; k < 3; ++k) way[k] = h[k] * periods[k];
-  if (!domain->triclinic) return;
-  way[0] = way[0] + h[5] * periods[1] + h[4] * periods[2];
-  way[1] = way[1] + h[3] * periods[2];
-}
-
 /* ---------------------------------------------------------------------- */
 
 Sites::Sites(LAMMPS *lmp, Bodies &bodies, Ownership &ownership) :
@@ -119,9 +108,7 @@ void Sites::sort()
 std::array<int, 3> Sites::image_of(const Site &site) const
 {
   const imageint flags = atom->image[site.atom];
-  std::array<int, 3> periods = {(int) (flags & IMGMASK) - IMGMAX,
-                                (int) (flags >> IMGBITS & IMGMASK) - IMGMAX,
-                                (int) (flags >> IMG2BITS) - IMGMAX};
+  std::array<int, 3> periods = periods_of(flags);
   double away[3] = {0.0, 0.0, 0.0}, arm[3], expected[3], turns[3];
   domain->unmap(away, flags);
   to_space(bodies.axes(site.body), site.arm_body, arm);
@@ -136,12 +123,11 @@ std::array<int, 3> Sites::image_of(const Site &site) const
    positions and velocities
 ------------------------------------------------------------------------- */
 
-/// Computes the displacements of the images in the present box, with the operations of
-/// Domain::unmap().
+/// Computes the displacements of the images in the present box.
 void Sites::find_ways()
 {
   ways.resize(images.size());
-  for (size_t m = 0; m < images.size(); ++m) through(domain, images[m].data(), ways[m].data());
+  for (size_t m = 0; m < images.size(); ++m) through(domain->h, images[m].data(), ways[m].data());
 }
 
 template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Sites::place_points()
@@ -186,6 +172,11 @@ template <bool POSITIONS, bool VELOCITIES> void Sites::place_points()
     place_points<POSITIONS, VELOCITIES, true>();
   } else
     place_points<POSITIONS, VELOCITIES, false>();
+  if (VELOCITIES) {
+    note_rates();
+    if (domain->deform_vremap)
+      for (const Site &site : sites) add_flow(site, 1.0, atom->v[site.atom]);
+  }
   if (VELOCITIES && atom->vest)
     for (const Site &site : sites) std::copy_n(atom->v[site.atom], 3, atom->vest[site.atom]);
   if (!extended.sites.empty()) extended.place(bodies.states(), POSITIONS, VELOCITIES);
@@ -216,10 +207,36 @@ void Sites::place_extended()
   if (!extended.sites.empty()) extended.place(bodies.states(), true, true);
 }
 
+void Sites::note_rates()
+{
+  face_rates = {};
+  if (!domain->deform_vremap) return;
+  std::copy_n(domain->h_rate, face_rates.size(), face_rates.begin());
+  face_group = domain->deform_groupbit;
+}
+
+/// Adds the velocity of a site's image relative to the image of its body.
+void Sites::add_flow(const Site &site, double factor, double *velocity) const
+{
+  const auto &mine = images[image[&site - begin()]], &of_body = bodies.body_at(site.body).image;
+  if (mine == of_body || !(atom->mask[site.atom] & face_group)) return;
+  double periods[3], flow[3];
+  for (int k = 0; k < 3; ++k) periods[k] = factor * (of_body[k] - mine[k]);
+  through(face_rates.data(), periods, flow);
+  add3(flow, velocity);
+}
+
+void Sites::take_out_flow()
+{
+  note_rates();
+  if (!domain->deform_vremap) return;
+  for (const Site &site : sites) add_flow(site, -1.0, atom->v[site.atom]);
+}
+
 /// The displacement of its image.
 void Sites::wrap(const Site &site, double *away) const
 {
-  through(domain, images[image[&site - begin()]].data(), away);
+  through(domain->h, images[image[&site - begin()]].data(), away);
 }
 
 Sites::Expected Sites::expected_position(const Site &site) const
@@ -243,8 +260,10 @@ Sites::Expected Sites::expected_velocity(const Site &site) const
   Expected v;
   to_space(frame.axes, site.arm_body, arm);
   cross3(frame.omega_space, arm, spin);
-  for (int k = 0; k < 3; ++k) v.value[k] = velocity[k] + spin[k];
-  v.size = length(velocity) + length(spin);
+  double flow[3] = {0.0, 0.0, 0.0};
+  if (face_rates != Rates()) add_flow(site, 1.0, flow);
+  for (int k = 0; k < 3; ++k) v.value[k] = velocity[k] + spin[k] + flow[k];
+  v.size = length(velocity) + length(spin) + length(flow);
   return v;
 }
 

@@ -18,6 +18,7 @@
 #define LMP_GEAR_QUAT_SITES_H
 
 #include "gear_quat_exact_sum.h"
+#include "gear_quat_fields.h"
 #include "gear_quat_ownership.h"
 
 #include <functional>
@@ -82,6 +83,16 @@ class Sites : protected Pointers {
   /// The number of periods between the unwrapped and the wrapped position of an atom of a body.
   std::array<int, 3> image_of(const Site &site) const;
 
+  // With fix deform remap v a site has the velocity of its own image, which moves with the faces of
+  // the box relative to the image of its body (Body::image).
+
+  /// The rates of the box, as Domain::h, with which velocities were placed; zero without the above.
+  using Rates = std::array<double, 6>;
+  const Rates &rates_of_faces() const { return face_rates; }
+  void fields(Fields &v) { v(face_rates, face_group); }
+  /// Gives the atoms the velocities of the images of their bodies, for the present rates of the box.
+  void take_out_flow();
+
   // sums over sites
 
   /// any: there may be forces; otherwise no loads are gathered.
@@ -124,11 +135,15 @@ class Sites : protected Pointers {
   std::vector<int> first, first_arm;    ///< the first site of each body, and the first with an arm
   bool any_images = false;              ///< some of these are not zero
   bool any_forces = true;
+  Rates face_rates = {};
+  int face_group = 1;    ///< bit of the group of fix deform
   int nplacements = 0;
 
   void sort();
   void wrap(const Site &site, double *away) const;
   void find_ways();
+  void add_flow(const Site &site, double factor, double *velocity) const;
+  void note_rates();
   template <bool POSITIONS, bool VELOCITIES> void place_points();
   template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place_points();
   template <class Start, class Add, class Finish>

@@ -184,7 +184,7 @@ struct Start::Search {
         one.coupling->measure();
         one.coupling->begin_start(nodes());
       }
-      one.work.resize(bodies.nmoved());
+      one.work.begin(bodies.nmoved());
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
         our.collocation.begin(
             local_series(bodies.rigid_of(ibody), one.scaled(ibody), one.acting(ibody), spacing),
@@ -195,7 +195,7 @@ struct Start::Search {
   void foretell()
   {
     for (auto &one : our.starters) {
-      for (auto &work : one.work) our.collocation.foretell(work);
+      for (auto &work : one.work.all()) our.collocation.foretell(work);
       if (one.coupling) one.coupling->foretell(nodes());
     }
   }
@@ -209,7 +209,7 @@ struct Start::Search {
         return false;
       }
     for (auto &one : our.starters) {
-      for (auto &work : one.work) our.collocation.settle(pair, work);
+      for (auto &work : one.work.all()) our.collocation.settle(pair, work);
       if (one.coupling) one.coupling->settle(nodes(), pair);
     }
     change = over_ranks(MPI_MAX, here, our.world);
@@ -298,8 +298,7 @@ StartFound Start::search(Forces &forces)
   const StartFound start = find_start(most_start_values(starters), first_spacing(), all);
   const double copies = 3.0 * sizeof(double) * (atom->torque_flag ? 4 : 3) *
       (atom->nlocal + atom->nghost);    // positions, velocities, forces
-  for (auto &one : starters)
-    one.ownership->note_scratch(one.work.capacity() * sizeof(Collocation::Workspace) + copies);
+  for (auto &one : starters) one.ownership->note_scratch(one.work.memory_usage() + copies);
   if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
     reason.clear();
     choose(start, all.snapshots);

@@ -38,7 +38,7 @@ struct Starter {
   /// Predicts this choice; null if the scheme is given.  Collective.
   std::function<Scheme(const MotionSums &)> foresee;
 
-  std::vector<Collocation::Workspace> work = {};
+  Column<Collocation::Workspace> work = Column<Collocation::Workspace>(*bodies);
 
   Load acting(int ibody) const { return acting_on(*bodies, coupling, ibody); }
   BodyState scaled(int ibody) const { return scaled_of(*bodies, coupling, ibody); }

@@ -34,7 +34,8 @@ Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const St
                      double every_time, const Fleet &fleet, Bodies &bodies, TimeStep &time_step) :
     Pointers(lmp),
     fix(fix), fleet(fleet), bodies(bodies), time_step(time_step), present(with_trial_row(scheme)),
-    control(control), every_time(every_time), order(present), repeat(lmp, fix), failed()
+    control(control), every_time(every_time), order(present), repeat(lmp, fix), predicted(bodies),
+    failed()
 {
   record.values = present.values();
   if (control.energy) this->control.eps /= force->mvv2e;

@@ -151,12 +151,12 @@ class Tolerance : protected Pointers {
   double every_time;
   VariableOrder order;
   Repeat repeat;
-  std::vector<VariableOrder::Row> predicted;    ///< last rows, of bodies corrected together
-  StepMeasures errors;         ///< of the bodies corrected so far; of all, once judged
-  double speed = 0.0;          ///< upper limit of the speeds of all sites
-  double begun_with = 0.0;     ///< length of the first try of the present step
-  int tries = 0;               ///< failed tries of the present step
-  StepControl::Next failed;    ///< the next try
+  Column<VariableOrder::Row> predicted;    ///< last rows, of bodies corrected together
+  StepMeasures errors;                     ///< of the bodies corrected so far; of all, once judged
+  double speed = 0.0;                      ///< upper limit of the speeds of all sites
+  double begun_with = 0.0;                 ///< length of the first try of the present step
+  int tries = 0;                           ///< failed tries of the present step
+  StepControl::Next failed;                ///< the next try
   Steady steady;
   bool fresh = false;          ///< bodies were inserted in this step, set by the test of the error
   bool warned_held = false;    ///< warned of a step limited from below

@@ -98,7 +98,7 @@ void Tolerance::include(StepMeasures of_body)
 
 void Tolerance::note_prediction()
 {
-  predicted.resize(bodies.nmoved());
+  predicted.begin(bodies.nmoved());
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
     predicted[ibody] = order.last_row(bodies.history(ibody));
 }

@@ -158,6 +158,91 @@ def test_bodies_that_pass_faces_move_as_atoms_do(lmp_wheel, deform):
     assert np.abs(mutant - frame)[:, 3:6].max() > 10 * lags
 
 
+FLOW = "fix d all deform 1 xy erate 0.5 remap v"
+
+
+def stretching(frame, rates):
+    """The largest rate of a distance in a body, from unwrapped positions, and velocities and images of atoms.
+
+    ``rates``: the velocities of the periods, in columns.
+    """
+    place, speed, image = frame[:, :3], frame[:, 3:6], frame[:, 6:9]
+    assert len(np.unique(image, axis=0)) > 1
+    apart, apace = (np.diff(w.reshape(-1, 3, 3), axis=1) for w in (place, speed + image @ rates.T))
+    return np.abs((apart * apace).sum(axis=2)).max()
+
+
+@pytest.mark.parametrize("words", ["", "formulation first"])
+def test_atoms_have_the_velocities_of_their_images(lmp_wheel, words):
+    """With fix deform remap v, also in other runs, and in runs from restart and data files."""
+    straight = driven(FLOW, True, f"gear/quat molecule {words}", dt=0.005, steps=190)
+    straight = straight.replace("id x y z vx", "id xu yu zu vx")
+    halves = ("run 100\nrun 90", "run 100\nwrite_restart half\nwrite_data half.data nocoeff")
+    twice, first = (straight.replace("run 190", half) for half in halves)
+    again = straight.replace("read_data data.tilted", "read_restart half").replace("run 190", "run 90")
+    anew = straight.replace("read_data data.tilted", "read_data half.data").replace("run 190", "run 90")
+    later = straight.replace(FLOW, f"run 0\n{FLOW}")
+    decks = [straight, twice, first, again, anew, later, straight.replace("remap v", "remap none")]
+    result, frames = ends(lmp_wheel, decks)
+    edge = 3.0  # of the box along y
+    rates = np.zeros((3, 3))
+    rates[0, 1] = 0.5 * edge
+    for frame in frames[:-1]:
+        assert stretching(frame, rates) < 1e-9
+    assert stretching(frames[-1], rates) > 0.1
+    for frame, rounding in zip(frames[1:], (1e-9, None, 1e-9, 1e-6, 1e-9)):
+        if rounding:
+            assert np.abs(frame - frames[0])[:, :6].max() < rounding
+    assert "bodies are rebuilt" not in result.stdout
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_nobody_notices_who_leaves_or_arrives(lmp_tree, ranks):
+    """Free bodies in a flow; other fixes remove and insert bodies before atoms are wrapped."""
+    dimer = "dimer\n\n2 atoms\n\nCoords\n\n1 -0.3 0 0\n2 0.3 0 0\n\nTypes\n\n1 1\n2 1\n"
+    (lmp_tree.folder / "dimer.mol").write_text(dimer)
+    deck = """
+units lj
+atom_style molecular
+atom_modify map array sort 0 0.0
+region b prism 0 10 0 10 0 10 0 0 0
+create_box 1 b
+molecule d dimer.mol
+lattice sc 0.064
+create_atoms 0 box mol d 123
+mass 1 1.0
+pair_style zero {cutoff}
+pair_coeff * *
+neighbor 0.2 bin
+region whole block INF INF INF INF INF INF
+region r block 4 8 1 9 4 8 units box
+velocity all create 3.0 991 loop geom dist gaussian
+timestep 0.005
+{other}
+fix d all deform 1 xy erate 0.5 remap v
+fix move all gear/quat molecule mol d
+run 1000
+write_dump all custom {end} id vx vy vz iy modify sort id format float %.17g
+"""
+    others = (
+        "",
+        "fix e all evaporate 100 2 whole 4711 molecule yes",
+        "fix e all deposit 20 0 50 777 region r mol d near 0.1 vx 1 1",
+    )
+    for cutoff in (2.0, 0.3):  # the latter is less than the length of bodies, which all ranks then have
+        runs = []
+        for k, other in enumerate(others):
+            lmp_tree.run(deck.format(other=other, end=f"{k}.dump", cutoff=cutoff), ranks=ranks)
+            rows = np.loadtxt(lmp_tree.folder / f"{k}.dump", skiprows=9)
+            rows[:, 1] += 5.0 * rows[:, 4]  # relative to the first image of the box
+            runs.append({int(row[0]): row[1:4] for row in rows})
+        alone, fewer, more = runs
+        assert len(fewer) < len(alone) < len(more)
+        for tag, speed in alone.items():
+            assert np.abs(more[tag] - speed).max() < 1e-9
+            assert tag not in fewer or np.abs(fewer[tag] - speed).max() < 1e-9
+
+
 REMAPPED = {**FOLLOWED, **{name: box[:2] for name, box in BOXES.items() if box[2]}}
 
 

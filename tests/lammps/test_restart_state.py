@@ -182,9 +182,14 @@ NOT_IN_A_FILE = {
         STEP: "kept local_error kinetic friction_of_box tensor",
         MESSAGES: "told_of_box warned_box warned_mesh",
     },
+    "sites Sites": {
+        OTHERS: "bodies ownership extended",
+        DERIVED: "sites images image ways first first_arm any_images",
+        RUN: "any_forces nplacements",
+    },
     "motion Motion": {
         COMMAND: "masks",
-        OTHERS: "fix args fleet bodies ownership sites others",
+        OTHERS: "fix args fleet bodies ownership others",
         RUN: "set_up vibrations chosen damping watches next_look of_file",
         MESSAGES: "advised_step warned_pass warned_values warned_errors warned_friction",
     },
