@@ -233,8 +233,15 @@ def test_a_release_has_one_number_and_one_date():
     for name, pattern in patterns.items():
         number = re.search(pattern, (ROOT / name).read_text(), re.M)[1]
         assert number == metadata.version("lammps-gearquat"), name
+    assert f'"gearquat-analysis=={number.rpartition(".")[0]}.*"' in (ROOT / "pyproject.toml").read_text()
     date = re.search(r"^## \[[\d.]+\] - (.*)$", (ROOT / "CHANGELOG.md").read_text(), re.M)[1]
     assert f'date-released: "{date}"' in (ROOT / "CITATION.cff").read_text()
+
+
+def test_every_picture_is_on_a_page():
+    pages = "".join(path.read_text() for path in (ROOT / "README.md", *(ROOT / "doc").rglob("*.md")))
+    pictures = [path.relative_to(ROOT / "doc").as_posix() for path in (ROOT / "doc").rglob("*.png")]
+    assert len(pictures) > 10 and not [picture for picture in pictures if picture not in pages]
 
 
 # --- what LAMMPS' manual requires of a page, from the Makefile of its doc folder ---------------------

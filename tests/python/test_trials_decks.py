@@ -524,7 +524,7 @@ def test_deck_as_it_is_against_an_accurate_one(make_deck):
     with Deck(make_deck()) as deck:
         found = horizon.measure(deck, time=1.0, thresholds=[1e-6, 1e9])
         finer = horizon.measure(deck, time=1.0, steps=(0.002, None), thresholds=[1e-6])
-        assert "as it is" in report.horizon_text(deck, found)
+        assert "as it is" in report.horizon_text(deck, found) and "1e-06 σ  from t =" in report.horizon_text(deck, found)
     (level, parted), (_, never) = found.parting
     assert math.isinf(never) and 0 < parted < 1.0
     assert found.time[-1] == pytest.approx(1.0)
