@@ -375,6 +375,7 @@ Motion::Settings Motion::settings() const
   found.chain_length = temp.length;
   found.box = components;
   found.box_chain = box.length;
+  found.states_corrector = args.states("corrector");
   found.started = step.started;
   return found;
 }
@@ -422,6 +423,8 @@ bool Motion::read(Fields &file)
     step.started = of_file.started;
     fields(file);
     if (!file.is_complete()) return false;
+    // the number of values belongs to a corrector that this command does not state
+    if (of_file.states_corrector && !mine.states_corrector) edge_rate = 0.0;
     if (step.length() != 0.0) step.make_integrator();
   }
   if (comm->me != 0) return true;

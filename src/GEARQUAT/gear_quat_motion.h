@@ -99,12 +99,12 @@ class Motion : protected Pointers {
   struct Settings {
     double formulation, values, compensate, tolerance, tuned, projection, passes;
     double isokinetic, chains, chain_length, box, box_chain;
-    bool started;
+    bool states_corrector, started;
 
     template <class V> void fields(V &v)
     {
       v(formulation, values, compensate, tolerance, tuned, projection, passes, isokinetic, chains,
-        chain_length, box, box_chain, started);
+        chain_length, box, box_chain, states_corrector, started);
     }
   };
   Settings of_file = {};
