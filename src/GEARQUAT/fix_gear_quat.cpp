@@ -294,8 +294,7 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
   if (motion_acts) {
     motion->take_velocities(update->ntimestep - 1, true);
     if (motion->begins_steps()) Motion::begin_steps(*fleet, f, torque);
-    motion->look_at_contacts(f);
-    motion_acts = other_fixes->any_taken() || motion->watches_contacts();
+    motion_acts = other_fixes->any_taken();
   }
   driven_box->begin_step();
   sites->advance_densities(update->dt);

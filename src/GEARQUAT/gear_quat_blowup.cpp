@@ -38,6 +38,9 @@ static constexpr double INACCURATE = 0.03, WIDESPREAD = 0.1;
 
 static constexpr double OVERLAP = 0.01;
 
+static constexpr char CENTRAL[] =
+    "nearly all of its mass is at its center; give its outer atoms more mass, or state larger "
+    "moments of inertia by an infile";
 static constexpr char MEND[] = "or make the body linear by an infile with a smallest moment of 0";
 
 /* ----------------------------------------------------------------------
@@ -46,6 +49,7 @@ static constexpr char MEND[] = "or make the body linear by an infile with a smal
 
 Pace GearQuat::pace_of(LAMMPS *lmp, const Bodies &bodies)
 {
+  const int dimension = lmp->domain->dimension;
   Pace pace;
   double here[6] = {};    // twice the kinetic energy, degrees of freedom, mass, force
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
@@ -53,7 +57,7 @@ Pace GearQuat::pace_of(LAMMPS *lmp, const Bodies &bodies)
     const BodyState &state = bodies.state_of(ibody);
     here[0] += 2.0 *
         (translational_energy(rigid, state.velocity) + rotational_energy(rigid, state.omega_body));
-    here[1] += 3.0 + rigid.rotational_freedoms();
+    here[1] += rigid.freedoms(dimension);
     here[2] += rigid.mass;
     add3(bodies.load_of(ibody).force, here + 3);
   }
@@ -70,7 +74,7 @@ Pace GearQuat::pace_of(LAMMPS *lmp, const Bodies &bodies)
     to_body(bodies.axes(ibody), load.torque_space, torque_body);
     fastest2 = std::max(fastest2, dot3(force, force) / rigid.mass);
     for (int k = 0; k < 3; ++k)
-      if (rigid.inertia[k] > 0.0)
+      if (rigid.turns_about(k, dimension))
         fastest2 = std::max(fastest2, torque_body[k] * torque_body[k] / rigid.inertia[k]);
   }
   pace.vibration = std::sqrt(over_ranks(MPI_MAX, fastest2, lmp->world) / pace.kt);
@@ -89,12 +93,12 @@ double Pace::longest_step(const Scheme &scheme) const
 
 namespace {
 
-/// Finds the axes of the smallest and of the largest moment.  True only if the smallest moment is
-/// tiny.
-bool thin(const RigidBody &body, int &smallest, int &largest)
+/// Finds the axes of the smallest and of the largest moment about which bodies turn.  True only if
+/// the smallest moment is tiny.
+bool thin(const RigidBody &body, int dimension, int &smallest, int &largest)
 {
-  smallest = largest = 0;
-  for (int k = 1; k < 3; ++k) {
+  smallest = largest = 2;
+  for (int k = 0; k < 3 && dimension == 3; ++k) {
     if (body.inertia[k] < body.inertia[smallest]) smallest = k;
     if (body.inertia[k] > body.inertia[largest]) largest = k;
   }
@@ -105,12 +109,14 @@ bool thin(const RigidBody &body, int &smallest, int &largest)
 /// The numbers in the message about a body that rotates too fast.
 struct Lost {
   double moment, largest_moment, omega, longest_step;
+  double central;    ///< 1 if nearly all of its mass is at its center
 };
 
 /// The fastest rotation among all bodies that rotate too fast.
 struct Fastest {
   double omega = 0.0;
   tagint id = 0;
+  double extent = 0.0;
   RigidBody rigid = RigidBody();
   BodyState state = BodyState();
 
@@ -120,7 +126,7 @@ struct Fastest {
     if (its_omega <= omega || std::fabs(h) * its_omega < FLIGHT_SLOW ||
         survives_flight(scheme, body.rigid, its_state, h))
       return;
-    *this = {its_omega, body.id, body.rigid, its_state};
+    *this = {its_omega, body.id, body.extent, body.rigid, its_state};
   }
 };
 
@@ -135,9 +141,11 @@ tagint find_lost(LAMMPS *lmp, const Scheme &scheme, const Fastest &fastest, doub
   if (fastest.id == id) {
     const RigidBody &rigid = fastest.rigid;
     int smallest, largest;
-    const bool is_thin = thin(rigid, smallest, largest);
+    const bool is_thin = thin(rigid, lmp->domain->dimension, smallest, largest);
     mine = {is_thin ? rigid.inertia[smallest] : 0.0, rigid.inertia[largest], omega,
-            longest_step(scheme, rigid, fastest.state, h)};
+            longest_step(scheme, rigid, fastest.state, h),
+            double(rigid.inertia[largest] <
+                   NEARLY_LINEAR * rigid.mass * fastest.extent * fastest.extent)};
   }
   constexpr size_t N = sizeof(Lost) / sizeof(double);
   reduce(MPI_SUM, reinterpret_cast<double *>(&mine), reinterpret_cast<double *>(&lost), N,
@@ -150,8 +158,11 @@ double thermal_rotation(LAMMPS *lmp, const Bodies &bodies, double kt)
 {
   double fastest2 = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    for (const double moment : bodies.rigid_of(ibody).inertia)
-      if (moment > 0.0) fastest2 = std::max(fastest2, kt / moment);
+    for (int k = 0; k < 3; ++k) {
+      const RigidBody &rigid = bodies.rigid_of(ibody);
+      if (rigid.turns_about(k, lmp->domain->dimension))
+        fastest2 = std::max(fastest2, kt / rigid.inertia[k]);
+    }
   return TAIL * std::sqrt(over_ranks(MPI_MAX, fastest2, lmp->world));
 }
 
@@ -170,7 +181,7 @@ void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &sche
     BodyState state = bodies.state_of(ibody);
     int smallest, largest;
     now.compare(scheme, body, state, h);
-    if (!thin(body.rigid, smallest, largest)) continue;
+    if (!thin(body.rigid, lmp->domain->dimension, smallest, largest)) continue;
     for (double &omega : state.omega_body) omega = 0.0;
     state.omega_body[smallest] = std::sqrt(pace.kt / body.rigid.inertia[smallest]);
     warm.compare(scheme, body, state, h);
@@ -188,9 +199,10 @@ void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &sche
         CLEAR_OF_FORCES * std::fabs(lost.longest_step) * std::min(1.0, lost.omega / thermal);
     const double of_forces = pace.longest_step(scheme);
     if (of_forces > OVERLAP * step) step = std::min(step, of_forces);
-    text += fmt::format(": {:g} radians in a step are more than {} values can follow; use a time "
-                        "step of {:g} or shorter",
-                        lost.omega * std::fabs(h), scheme.values(), rounded_down(step));
+    text += fmt::format(": {:g} radians in a step are more than {} values can follow; ",
+                        lost.omega * std::fabs(h), scheme.values());
+    if (lost.central > 0.0) return text + CENTRAL;
+    text += fmt::format("use a time step of {:g} or shorter", rounded_down(step));
     if (lost.moment > 0.0) text += std::string(", ") + MEND;
     return text;
   };
@@ -206,10 +218,10 @@ void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &sche
 
 /// Advice for a body that becomes unstable by this rotation, if it is nearly linear and turns about
 /// its axis; otherwise empty.
-static std::string advice_on_spin(const RigidBody &body, const double *omega_body)
+static std::string advice_on_spin(const RigidBody &body, int dimension, const double *omega_body)
 {
   int smallest, largest;
-  if (!thin(body, smallest, largest)) return "";
+  if (!thin(body, dimension, smallest, largest)) return "";
   const double about = omega_body[smallest] * omega_body[smallest];
   if (!(2.0 * about > dot3(omega_body, omega_body))) return "";
   return fmt::format("; the body turns about the axis of its smallest moment of inertia, {:g}, the "
@@ -252,7 +264,7 @@ void Blowup::stop(int ibody, const BodyState &s, double h, double **f) const
   const std::string text = fmt::format(
       "Fix gear/quat: blow-up in step {}, time {:g}: body {}{} {}{}. {}. {}{}", update->ntimestep,
       time, id, molecule, what_happened(ibody, s, h), where(ibody, bad, met), cause.what,
-      cause.remedy, advice_on_spin(bodies.rigid_of(ibody), s.omega_body));
+      cause.remedy, advice_on_spin(bodies.rigid_of(ibody), domain->dimension, s.omega_body));
   if (bodies.is_large(ibody)) error->all(FLERR, agree(text, ibody, bad, met));
   error->one(FLERR, text);
 }

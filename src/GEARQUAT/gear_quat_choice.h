@@ -19,7 +19,7 @@
 
    More values give a higher order, but a narrower range of frequencies that conserves energy.
    The crossover from nine to five values follows from measured drifts of liquids (doc/theory.md).
-   Random forces and friction exclude large numbers of values for any motion
+   Random and dissipative forces exclude large numbers of values for any motion
    (gear_quat_limits.h). */
 
 #ifndef GEAR_QUAT_CHOICE_H
@@ -149,12 +149,11 @@ struct ChoiceOfValues {
   bool exact = false;    ///< from derivatives
   double turn = 0.0;     ///< radians in a step of the body that turns fastest
   Noise noise = Noise::NONE;
-  double damping = 0.0;       ///< part of a momentum that is damped by forces in a step
   double friction = 0.0;      ///< of a coupling, times the step
   bool may_be_gear = true;    ///< the corrector may be changed, too
   bool automatic = true;      ///< the number of values may be chosen
 
-  enum class Reason { FORMULATION, MOTION, NOISE, DAMPING, FRICTION };
+  enum class Reason { FORMULATION, MOTION, NOISE, FRICTION };
   struct Choice {
     Scheme scheme;
     Reason reason;
@@ -178,33 +177,16 @@ struct ChoiceOfValues {
 
   static constexpr double BAND = 1.3;
 
-  /// Largest accepted error due to the friction of forces, for motion driven by random forces and
-  /// for other motion; beyond the second value there is a warning.  The band is the one of the
-  /// motion.
-  static constexpr double RANDOM_ERROR = 0.02, LARGEST_ERROR = 0.05;
-
   /// scheme: with the number of values for smooth motion.  present: the current number, 0 for none.
   Choice choose(const Scheme &scheme, int present = 0) const
   {
     Choice choice = {scheme, Reason::FORMULATION};
     if (!scheme.first() && scheme.tuned) choice = {by_motion(scheme, present), Reason::MOTION};
-    const auto follows = [&](const Scheme &one) {
-      const double error = friction_error(one, damping) / (one.values() == present ? BAND : 1.0);
-      return error <= (noise == Noise::NONE ? LARGEST_ERROR : RANDOM_ERROR);
-    };
-    if (permits(choice.scheme) && follows(choice.scheme)) return choice;
-    choice.reason = !suits_noise(choice.scheme, noise) ? Reason::NOISE
-        : permits(choice.scheme)                       ? Reason::DAMPING
-                                                       : Reason::FRICTION;
-    const std::vector<Scheme> list = others(scheme);
-    choice.scheme = list.back();
-    double least = std::numeric_limits<double>::infinity();
-    for (const Scheme &other : list) {
-      if (!permits(other)) continue;
-      const double error = friction_error(other, damping);
-      if (error < least || follows(other)) choice.scheme = other;
-      if (follows(other)) break;
-      least = std::min(least, error);
+    if (permits(choice.scheme)) return choice;
+    choice.reason = suits_noise(choice.scheme, noise) ? Reason::FRICTION : Reason::NOISE;
+    for (const Scheme &other : others(scheme)) {
+      choice.scheme = other;
+      if (permits(other)) break;
     }
     return choice;
   }
@@ -227,24 +209,9 @@ struct ChoiceOfValues {
     return std::min(by_edge, turn > most ? advised / turn : 1.0);
   }
 
-  /// True if the friction of forces is too strong for this scheme.
-  bool too_damped(const Scheme &scheme) const
-  {
-    return friction_error(scheme, damping) > LARGEST_ERROR;
-  }
-  /// The largest part of a momentum that may be lost in a step, over the schemes of a choice.
-  double largest_damping(const Scheme &scheme) const
-  {
-    double most = largest_friction(scheme, LARGEST_ERROR);
-    for (const Scheme &other : others(scheme))
-      if (permits(other)) most = std::max(most, largest_friction(other, LARGEST_ERROR));
-    return most;
-  }
-
  private:
-  /// Random forces cause no vibrations.  The edge of motion that only friction slows down is the part
-  /// of a momentum that is lost in a step.
-  bool shakes() const { return exact && noise == Noise::NONE && edge > 2.0 * damping; }
+  /// Random forces cause no vibrations.
+  bool shakes() const { return exact && noise == Noise::NONE; }
 
   /// Radians in a step.
   double longest_edge(const Scheme &scheme) const

@@ -84,31 +84,32 @@ void OtherFixes::refuse_thermostat(const Fix *other) const
                other->id, other->style);
 }
 
-/// Random forces have no derivatives, forces of collisions last a single step, and contact forces
-/// are discontinuous.
 void OtherFixes::tell_noise()
 {
-  constexpr char RANDOM[] = "are random", AT_ONCE[] = "set in at once where particles touch";
-  if (known(PairFact::CONTACTS, force))
-    tell_noise(fmt::format("pair style {} {}", force->pair_style, AT_ONCE), Noise::RANDOM);
-  for (const auto *other : modify->get_fix_list()) {
-    const bool collides = known(FixFact::COLLISIONS, other);
-    const bool touches = known(FixFact::CONTACTS, other);
-    if (!collides && !((touches || known(FixFact::RANDOM, other)) && shared_atom(other))) continue;
-    tell_noise(name_of(other) + " " + (touches ? AT_ONCE : RANDOM),
-               collides ? Noise::COLLISIONS : Noise::RANDOM);
-  }
-}
-
-void OtherFixes::tell_noise(const std::string &forces, Noise noise)
-{
   if (warned_noise || args.automatic_values) return;
-  const std::string remedy = remedy_for_noise(args.scheme, noise);
-  if (remedy.empty()) return;
+  const NoisyForces found = noise_of_forces(lmp, ownership);
+  if (suits_noise(args.scheme, found.noise)) return;
   warned_noise = true;
   if (comm->me == 0)
-    error->warning(FLERR, "Fix gear/quat: forces of {}, and {} values turn them into heat; use {}",
-                   forces, args.scheme.values(), remedy);
+    error->warning(FLERR,
+                   "Fix gear/quat: {}, and {} values turn them into heat; leave out keywords "
+                   "values and corrector",
+                   found.words(), args.scheme.values());
+}
+
+NoisyForces GearQuat::noise_of_forces(LAMMPS *lmp, const Ownership &ownership)
+{
+  if (known(PairFact::DISSIPATIVE, lmp->force))
+    return {Noise::DISSIPATIVE, fmt::format("pair style {}", lmp->force->pair_style)};
+  NoisyForces found;
+  for (const auto *fix : lmp->modify->get_fix_list()) {
+    const bool dissipates = known(FixFact::DISSIPATIVE, fix);
+    if (!dissipates && !known(FixFact::RANDOM, fix)) continue;
+    if (!known(FixFact::BESIDE_GROUP, fix) && !shared_atom(lmp, ownership, fix)) continue;
+    if (dissipates) return {Noise::DISSIPATIVE, name_of(fix)};
+    if (found.noise == Noise::NONE) found = {Noise::RANDOM, name_of(fix)};
+  }
+  return found;
 }
 
 tagint GearQuat::shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix *other)

@@ -32,6 +32,19 @@ struct ActOnAtoms;
 /// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.
 tagint shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix *other);
 
+/// Forces without derivatives on bodies, and the style with the strongest ones.
+struct NoisyForces {
+  Noise noise = Noise::NONE;
+  std::string style;
+
+  std::string words() const
+  {
+    return "forces of " + style + (noise == Noise::RANDOM ? " are random" : " are dissipative");
+  }
+};
+/// Collective.
+NoisyForces noise_of_forces(LAMMPS *lmp, const Ownership &ownership);
+
 class OtherFixes : protected Pointers {
  public:
   OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Ownership &ownership, Sites &sites,
@@ -76,7 +89,6 @@ class OtherFixes : protected Pointers {
   bool warned_change = false;          ///< warned of an unknown change in this run
 
   void tell_noise();
-  void tell_noise(const std::string &forces, Noise noise);
   tagint shared_atom(const Fix *other) const
   {
     return GearQuat::shared_atom(lmp, ownership, other);

@@ -44,32 +44,12 @@ static constexpr double SAME = 1.0e-13;
 
 /* ---------------------------------------------------------------------- */
 
-Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners, Which which) :
-    Pointers(lmp), which(which), tallies(lmp)
+Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(lmp), tallies(lmp)
 {
   look_at_styles();
   if (why.empty()) look_at_fixes(owners);
   if (why.empty()) look_at_variables();
-  if (why.empty() && which == Which::ALL) look_at_time();
-}
-
-Noise GearQuat::noise_of_forces(const LAMMPS *lmp, const std::function<bool(int)> &in_body)
-{
-  Noise found = Noise::NONE;
-  if (known(PairFact::RANDOM, lmp->force)) found = Noise::RANDOM;
-  if (known(PairFact::CONTACTS, lmp->force)) found = Noise::COLLISIONS;
-  for (const auto *fix : lmp->modify->get_fix_list()) {
-    if (known(FixFact::COLLISIONS, fix)) return Noise::COLLISIONS;
-    const bool touches = known(FixFact::CONTACTS, fix);
-    if (!touches && !known(FixFact::RANDOM, fix)) continue;
-    int here = 0;
-    for (int i = 0; i < lmp->atom->nlocal; ++i)
-      if ((lmp->atom->mask[i] & fix->groupbit) && in_body(i)) here = 1;
-    if (!over_ranks(MPI_MAX, here, lmp->world)) continue;
-    if (touches) return Noise::COLLISIONS;
-    if (found == Noise::NONE) found = Noise::RANDOM;
-  }
-  return found;
+  if (why.empty()) look_at_time();
 }
 
 void Forces::look_at_styles()
@@ -79,10 +59,7 @@ void Forces::look_at_styles()
     why = fmt::format("run style {} {}", update->integrate_style, reason);
   if (const char *style = unrepeatable_bond(force))
     why = fmt::format("bonds of style {} may break or change for good", style);
-  // during LAMMPS' setup, contacts keep their histories
-  const bool contacts = which == Which::OF_VELOCITIES && known(PairFact::CONTACTS, force);
-  if (which == Which::OF_VELOCITIES) styles = force->pair && comm->ghost_velocity;
-  if (styles && known(PairFact::UNREPEATABLE, force) && !contacts)
+  if (known(PairFact::UNREPEATABLE, force))
     why = fmt::format("pair style {} draws random numbers or has a memory", force->pair_style);
 }
 
@@ -95,14 +72,7 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
     if (std::find(owners.begin(), owners.end(), fix) != owners.end()) continue;
     const int mask = modify->get_fix_mask(fix);
     if (known(FixFact::REPEATABLE, fix) && (mask & FixConst::PRE_FORCE)) all_after = false;
-    const bool random = known(FixFact::RANDOM, fix) && (mask & FixConst::POST_FORCE);
-    if (which == Which::OF_VELOCITIES) {
-      if (known(FixFact::THREADS, fix)) pre_force.push_back(fix);
-      if (known(FixFact::REPEATABLE, fix) || known(FixFact::CONTACTS, fix))
-        post_force.push_back(fix);
-    } else if (which == Which::WITHOUT_RANDOM && random && !fix->time_integrate)
-      continue;
-    else if (fix->time_integrate)
+    if (fix->time_integrate)
       why = name_of(fix) + " moves atoms";
     else if (mask & within_step)
       why = name_of(fix) + " acts within the step";
@@ -234,14 +204,8 @@ double Forces::largest_displacement() const
 
 void Forces::evaluate(int eflag, int vflag)
 {
-  const int setting_up = update->setupflag;
-  if (which == Which::OF_VELOCITIES) update->setupflag = 1;
-  if (styles)
-    evaluate_styles(eflag, vflag);
-  else
-    clear_owned();
+  evaluate_styles(eflag, vflag);
   for (auto *fix : post_force) fix->post_force(vflag);
-  update->setupflag = setting_up;
 }
 
 /// Repeats Verlet::run() for a step without new neighbor lists, up to post_force() of fixes.
@@ -269,7 +233,6 @@ void Forces::clear_owned()
 void Forces::compute_forces(int eflag, int vflag)
 {
   if (force->pair && force->pair->compute_flag) force->pair->compute(eflag, vflag);
-  if (which == Which::OF_VELOCITIES) return;
   if (atom->molecular != Atom::ATOMIC) {
     if (force->bond) force->bond->compute(eflag, vflag);
     if (force->angle) force->angle->compute(eflag, vflag);

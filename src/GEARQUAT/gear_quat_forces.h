@@ -17,12 +17,9 @@
 #ifndef LMP_GEAR_QUAT_FORCES_H
 #define LMP_GEAR_QUAT_FORCES_H
 
-#include "gear_quat_limits.h"
-
 #include "lmptype.h"
 #include "pointers.h"
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,8 +28,6 @@ class Fix;
 }    // namespace LAMMPS_NS
 
 namespace LAMMPS_NS::GearQuat {
-
-struct Scheme;
 
 /// LAMMPS' records of computes: the last step at which each was evaluated, the steps for which it
 /// was requested, and the step in which energies and virials were tallied.  A fix whose force is a
@@ -60,24 +55,13 @@ class Tallies : protected Pointers {
   bigint tallied[4];
 };
 
-/// The kind of forces without derivatives that act on the atoms selected by `in_body`.  Collective.
-Noise noise_of_forces(const LAMMPS *lmp, const std::function<bool(int)> &in_body);
-
 class Forces : protected Pointers {
  public:
-  enum class Which {
-    ALL,               ///< at any positions
-    WITHOUT_RANDOM,    ///< without fixes whose forces are random
-    OF_VELOCITIES      ///< at present positions, and only those that may depend on velocities
-  };
   /// Examines the simulation.  owners: the calling fixes, which are not evaluated.  Collective.
-  Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners, Which which = Which::ALL);
+  Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners);
 
   /// Empty if forces can be followed, otherwise the reason.
   const std::string &reason() const { return why; }
-
-  /// False if there are no forces to evaluate.
-  bool any() const { return styles || !post_force.empty(); }
 
   /// Saves all data of all atoms, including ghosts, for any atom style: positions, velocities,
   /// forces, and other quantities that pair styles sum up or overwrite, such as rates of energies.
@@ -92,9 +76,7 @@ class Forces : protected Pointers {
   void evaluate(int eflag = 0, int vflag = 0);
 
  private:
-  const Which which;
   std::string why;
-  bool styles = true;    ///< pairs and all other forces that LAMMPS evaluates before fixes
   std::vector<Fix *> pre_force, post_force;
   bool all_after = true;    ///< no fix of post_force acts before the forces of the styles instead
   struct Copy {

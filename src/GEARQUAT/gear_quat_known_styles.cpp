@@ -41,9 +41,9 @@ struct Word {
 ------------------------------------------------------------------------- */
 
 static constexpr StyleFact<PairFact> PAIRS[] = {
-    {PairFact::UNREPEATABLE, "dpd", "random forces, but not in mdpd/rhosum"},
-    {PairFact::UNREPEATABLE, "gran", "histories of contacts grow, but not in gran/hooke"},
-    {PairFact::UNREPEATABLE, "brownian", "random forces, scaled by the time step"},
+    {PairFact::UNREPEATABLE, "^[emst]?dpd", "random forces, but not in mdpd/rhosum"},
+    {PairFact::UNREPEATABLE, "^gran", "histories of contacts grow, but not in gran/hooke"},
+    {PairFact::UNREPEATABLE, "^brownian", "random forces, scaled by the time step"},
     {PairFact::UNREPEATABLE, "^dsmc", "random collisions change velocities"},
     {PairFact::UNREPEATABLE, "^reax",
      "fix qeq finds its charges, beginning with charges of earlier steps"},
@@ -57,10 +57,16 @@ static constexpr StyleFact<PairFact> PAIRS[] = {
      "reads kernels and interfaces that fix rheo computes once in a step"},
     {PairFact::UNREPEATABLE, "^smd",
      "deformations, stresses and damage are integrated by every evaluation"},
-    {PairFact::RANDOM, "dpd", "a random force on every pair"},
-    {PairFact::RANDOM, "brownian", "a random force on every atom"},
-    {PairFact::RANDOM, "^dsmc", "random collisions"},
-    {PairFact::CONTACTS, "^gran", "forces set in, and are damped, where particles touch"},
+    {PairFact::DISSIPATIVE, "^[emst]?dpd", "friction and a random force on every pair"},
+    {PairFact::DISSIPATIVE, "^brownian", "friction and a random force on every atom"},
+    {PairFact::DISSIPATIVE, "^dsmc", "random collisions"},
+    {PairFact::DISSIPATIVE, "^gran", "forces set in, and are damped, where particles touch"},
+    {PairFact::DISSIPATIVE, "^bpm", "as gran"},
+    {PairFact::DISSIPATIVE, "^lubricate", "friction of the fluid between particles"},
+    {PairFact::DISSIPATIVE, "^sph", "viscosity"},
+    {PairFact::DISSIPATIVE, "^rheo", "viscosity"},
+    {PairFact::DISSIPATIVE, "^smd", "viscosity"},
+    {PairFact::DISSIPATIVE, "^mesocnt/viscous", "friction between tubes"},
     {PairFact::READS_VARIABLES, "^hybrid/scaled", "factors of its styles are numbers or variables"},
 };
 
@@ -115,13 +121,16 @@ static constexpr StyleFact<FixFact> FIXES[] = {
     {FixFact::WITHOUT_VARIABLES, "^planeforce", "three numbers"},
     {FixFact::WITHOUT_VARIABLES, "^spring$", "numbers"},
     {FixFact::WITHOUT_VARIABLES, "^viscous$", "numbers"},
-    {FixFact::RANDOM, "langevin", "random forces in every step, with friction"},
-    {FixFact::RANDOM, "brownian", "random displacements, and it integrates itself"},
+    {FixFact::RANDOM, "^langevin", "random forces in every step, with friction"},
+    {FixFact::RANDOM, "^brownian", "random displacements, and it integrates itself"},
     {FixFact::RANDOM, "^gle", "random changes of velocities with memory, and it integrates itself"},
     {FixFact::RANDOM, "^gld", "random forces with memory, and it integrates itself"},
     {FixFact::RANDOM, "^ttm", "random forces by the temperature of electrons"},
-    {FixFact::COLLISIONS, "^srd", "collisions with its particles, each a force of one step"},
-    {FixFact::CONTACTS, "^wall/gran", "forces set in, and are damped, where particles touch it"},
+    {FixFact::RANDOM, "^qtb", "random forces with memory, with friction"},
+    {FixFact::DISSIPATIVE, "^srd", "collisions with its particles, each a force of one step"},
+    {FixFact::DISSIPATIVE, "^wall/gran", "forces set in, and are damped, where particles touch it"},
+    {FixFact::DISSIPATIVE, "^damping/cundall", "its forces change sign with velocities"},
+    {FixFact::BESIDE_GROUP, "^srd", "its particles collide with atoms of another group"},
     {FixFact::THERMOSTAT, "^temp/", "scales velocities, or mixes them with random ones"},
     {FixFact::THERMOSTAT, "^langevin", "friction and random forces"},
     {FixFact::THERMOSTAT, "^gle$", "friction with memory and random forces"},
@@ -164,7 +173,7 @@ static constexpr StyleFact<FixFact> FIXES[] = {
 
 static constexpr StyleFact<ComputeFact> COMPUTES[] = {
     {ComputeFact::READS_LOCAL_DATA, "^reduce", "its inputs may be local data of a fix"},
-    {ComputeFact::ADDS_UP, "/tally",
+    {ComputeFact::ADDS_UP, "^.*/tally",
      "Pair::ev_tally() calls it for every pair of every evaluation"},
 };
 
@@ -359,4 +368,13 @@ const ActOnAtoms *GearQuat::act_on_atoms(const Fix *fix)
   for (const auto &row : ACTS_ON_ATOMS)
     if (utils::strmatch(fix->style, row.pattern)) return &row;
   return nullptr;
+}
+
+/// LAMMPS shows the present target only.  In FixLangevin it is declared after three other numbers,
+/// in one line: first target, last target, damping time.
+double GearQuat::damping_time(const Fix *langevin)
+{
+  int dim = -1;
+  const void *target = const_cast<Fix *>(langevin)->extract("t_target", dim);
+  return target && dim == 0 ? static_cast<const double *>(target)[-1] : 0.0;
 }

@@ -5,10 +5,9 @@
 
 /* Properties of other LAMMPS styles, looked up by name.  LAMMPS does not declare these properties,
    so they were taken from its source code; every row of a table states its reason.  Where LAMMPS
-   does
-   declare them (gear_quat_declared.h), the declaration takes precedence.  The callers decide on the
-   consequences.  In each table the first matching row counts.  Patterns have the syntax of
-   utils::strmatch(). */
+   does declare them (gear_quat_declared.h), the declaration takes precedence.  The callers decide on
+   the consequences.  In each table the first matching row counts.  Patterns have the syntax of
+   utils::strmatch() and begin with ^, so that they are not found within other names. */
 
 #ifndef LMP_GEAR_QUAT_KNOWN_STYLES_H
 #define LMP_GEAR_QUAT_KNOWN_STYLES_H
@@ -31,8 +30,7 @@ std::string name_of(const Fix *fix);
 /// Properties of a pair style, also as a part of a hybrid style.
 enum class PairFact {
   UNREPEATABLE,       ///< its forces differ, or may differ, when they are evaluated again
-  RANDOM,             ///< its forces are random
-  CONTACTS,           ///< its forces are contact forces with friction
+  DISSIPATIVE,        ///< its forces damp motion, and may be random or set in where atoms touch
   READS_VARIABLES,    ///< it may evaluate variables of the script
 };
 
@@ -43,8 +41,8 @@ enum class FixFact {
   THREADS,       ///< pre_force() clears the forces of the threads of the OPENMP package
   WITHOUT_VARIABLES,    ///< of REPEATABLE: evaluates no variables of the script
   RANDOM,               ///< its forces or changes of velocities are random
-  COLLISIONS,           ///< its forces are due to collisions, each of which lasts one step
-  CONTACTS,             ///< its forces are contact forces with friction
+  DISSIPATIVE,          ///< its forces damp motion, and set in where atoms touch or collide
+  BESIDE_GROUP,         ///< its forces act on atoms outside of its group
   THERMOSTAT,           ///< it controls a temperature, by forces or by velocities
   TIME_STEP,            ///< it changes the time step
   BODY_OF_ATOMS,        ///< after init() extract("body") gives the body of each atom, or -1
@@ -101,6 +99,8 @@ struct ActOnAtoms {
 };
 /// The effect of a fix on atoms, null if the fix is not known to have such an effect.
 const ActOnAtoms *act_on_atoms(const Fix *fix);
+/// The damping time of a fix langevin, 0 if unknown.
+double damping_time(const Fix *langevin);
 
 }    // namespace LAMMPS_NS::GearQuat
 

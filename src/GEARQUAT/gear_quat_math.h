@@ -222,10 +222,15 @@ struct RigidBody {
   {
     return (inertia[0] > 0.0) + (inertia[1] > 0.0) + (inertia[2] > 0.0);
   }
-  /// Includes translation; in two dimensions the body turns only about z.
+  /// True if the body turns about this axis; in two dimensions bodies turn only about z.
+  bool turns_about(int axis, int dimension) const
+  {
+    return inertia[axis] > 0.0 && (dimension == 3 || axis == 2);
+  }
+  /// Includes translation.
   int freedoms(int dimension) const
   {
-    return dimension == 2 ? 2 + (inertia[2] > 0.0) : 3 + rotational_freedoms();
+    return dimension == 2 ? 2 + turns_about(2, 2) : 3 + rotational_freedoms();
   }
 };
 

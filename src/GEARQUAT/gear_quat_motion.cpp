@@ -29,9 +29,10 @@ static constexpr double SHORTER = 0.49, LONGER = 2.05;
 
 // Forces at a corrected pose differ from forces at the predicted pose by the effect of the
 // correction, so at a stable step their residual is smaller than the last residual.  If a residual
-// exceeds the last residual by OTHER_FORCES, or by OTHER_NOISE for random forces, the forces have
-// changed since the last step.  Residuals explained by rounding are excepted: rounding of forces,
-// relative to the largest force on an atom, and rounding of the displacement of a body in a step.
+// exceeds the last residual by OTHER_FORCES, or by OTHER_NOISE where forces cannot be evaluated
+// again, the forces have changed since the last step.  Residuals explained by rounding are excepted:
+// rounding of forces, relative to the largest force on an atom, and rounding of the displacement of
+// a body in a step.
 
 static constexpr double OTHER_FORCES = 1.0, OTHER_NOISE = 10.0;
 static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-13;
@@ -98,7 +99,6 @@ void Motion::begin_run()
     step.coupling->begin_run(!step.started, step.tolerance ? std::min(h, longest_step()) : h);
   if (step.tolerance) step.tolerance->announce_output();
   vibrations.begin_run();
-  step.large_errors.begin_run();
   set_up = true;
 }
 
@@ -164,9 +164,8 @@ void Motion::begin_steps(const Fleet &fleet, double **f, double **torque)
   }
   start_together(full, needed);
   for (const auto &one : fleet.members) {
-    one.motion->tell_friction();
+    one.motion->warn_of_langevin();
     one.motion->warn_of_single_pass();
-    one.motion->next_look = 0;
   }
 }
 
@@ -231,9 +230,11 @@ bool Motion::forces_can_be_followed() const
   return Forces(lmp, owners).reason().empty();
 }
 
-/// True if the residual of the present loads is too large for the histories.
+/// True if the residual of the present loads is too large for the histories.  The few values for
+/// forces that jump, as of contacts, follow any change soon.
 bool Motion::forces_changed(double **f)
 {
+  if (noise_of_forces(lmp, ownership).noise != Noise::NONE) return false;
   if (step.coupling) step.coupling->measure();
   const Integrator &integrator = *step.present_integrator();
   double here[2] = {0.0, 0.0};    // error of the last step, force on an atom
@@ -283,7 +284,6 @@ double Motion::last_error() const
 bool Motion::has_to_start(double **f)
 {
   if (step.coupling) step.coupling->meet_forces();
-  measure_friction(f);
   const char *reason = step.started ? reason_to_start_anew(f) : nullptr;
   if (reason && comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat {}: {}; histories are rebuilt\n", fix->id, reason);
@@ -327,7 +327,6 @@ void Motion::begin(bool full)
   // after the checks of the start, since an error of a coupling may have the same cause
   if (chosen) warn_of_vibrations(*chosen, step.scheme(), true);
   chosen.reset();
-  step.large_errors.begin(step.scheme().values());
   if (!step.tolerance) return;
   step.tolerance->begin(full);
   step.make_integrator();

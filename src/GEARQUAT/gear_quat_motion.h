@@ -51,14 +51,8 @@ class Motion : protected Pointers {
   /// torques of all fixes, unless consistent histories exist.  If one fix needs a start, all others
   /// start with it, where a full start is possible.  Collective.
   static void begin_steps(const Fleet &fleet, double **f, double **torque);
-  /// True if contacts, whose friction has not been measured, may close in the following steps.
-  bool watches_contacts() const { return watches; }
-  /// Before a step, occasionally: measures the friction of contacts.  f: as in begin_steps().
-  /// Collective.
-  void look_at_contacts(double **f);
   /// After a step: warns if vibrations or rotations have become too fast for the step since
-  /// histories began, or if collisions are too short.  Collective in the last step of a run and a
-  /// few others.
+  /// histories began.  Collective in the last step of a run and a few others.
   void look_at_vibrations();
   /// The largest error of a body on this rank in the last step, as a length.
   double last_error() const;
@@ -121,20 +115,14 @@ class Motion : protected Pointers {
   Vibrations vibrations;
   double advised_step = HUGE_VAL;          ///< by the last warning about vibrations
   std::optional<ChoiceOfValues> chosen;    ///< input to the choice of a start that has not ended
-  bool warned_pass = false;
-  bool warned_values = false, warned_errors = false;
-  double damping = 0.0;    ///< part of a momentum that is damped by forces in a step
-  void measure_friction(double **f);
-  bool warned_friction = false, watches = false;
-  bigint next_look = 0;    ///< step before which the friction of contacts is measured again
-  void tell_friction();
+  bool warned_pass = false, warned_values = false, warned_langevin = false;
   Scheme foresee_scheme(const MotionSums &here) const;
   Scheme choose_scheme(const MotionSums &here);
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
   void warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins);
   void warn_of_values(const ChoiceOfValues &scene);
-  void warn_of_errors(const ChoiceOfValues &scene);
   void warn_of_single_pass();
+  void warn_of_langevin();
   const char *another_scheme_suits();
   std::string words_of_scheme() const;
   /// True unless start zero is given: a start determines as many derivatives as it can.

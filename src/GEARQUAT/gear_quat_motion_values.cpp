@@ -5,7 +5,6 @@
 
 #include "gear_quat_motion.h"
 
-#include "gear_quat_friction.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
@@ -13,7 +12,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix.h"
-#include "force.h"
+#include "modify.h"
 #include "update.h"
 #include "utils.h"
 
@@ -38,10 +37,7 @@ ChoiceOfValues Motion::scene_of(const MotionSums &here) const
   scene.edge = bodies.number() > 0 ? all.fast_edge(step.length()) : HUGE_VAL;
   scene.exact = all.knows_derivatives(step.length());
   scene.turn = all.turn(step.length());
-  scene.noise = noise_of_forces(lmp, [this](int i) {
-    return ownership.in_body(i);
-  });
-  scene.damping = damping;
+  scene.noise = noise_of_forces(lmp, ownership).noise;
   scene.may_be_gear = !args.states("corrector");
   scene.automatic = args.automatic_values;
   return scene;
@@ -79,10 +75,7 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
   if (comm->me != 0) return;
   std::string why;
   if (choice.reason == Reason::NOISE)
-    why = scene.noise == Noise::RANDOM ? "because forces are random"
-                                       : "because forces of collisions or contacts set in at once";
-  else if (choice.reason == Reason::DAMPING)
-    why = fmt::format("because forces take {:.2g} of a momentum in a step", scene.damping);
+    why = "because " + noise_of_forces(lmp, ownership).words();
   else if (choice.reason == Reason::FRICTION)
     why = "because the thermostat has a strong friction";
   else if (choice.reason == Reason::FORMULATION)
@@ -94,8 +87,6 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
   else
     why = bodies.number() > 0 ? "because the motion is not known before it begins"
                               : "because there are no bodies yet";
-  if (choice.reason == Reason::NOISE && known(PairFact::RANDOM, force))
-    why += fmt::format("; the friction of pair style {} is not measured", force->pair_style);
   const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
   utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
                  other_corrector ? " and corrector gear" : "", why);
@@ -138,27 +129,6 @@ void Motion::look_at_vibrations()
     return;
   }
   if (scene.exact && args.automatic_values) warn_of_values(scene);
-  warn_of_errors(scene);
-}
-
-/// Warns once of collisions that no window has shown.  Errors of random forces, of contacts, and
-/// with Gear's coefficients are large in any case.  Collective.
-void Motion::warn_of_errors(const ChoiceOfValues &scene)
-{
-  if (warned_errors || scene.noise != Noise::NONE || !step.scheme().tuned) return;
-  const LargeErrors::Counts &mine = step.large_errors.counted();
-  double here[2] = {mine.large, mine.all};
-  const auto sums = over_ranks(MPI_SUM, here, world);
-  const LargeErrors::Counts all = {sums[0], sums[1]};
-  if (!all.show_collisions()) return;
-  warned_errors = true;
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat {}: by step {} collisions have been too short for the time step: "
-                   "in {:.2g} % of all steps of bodies the error exceeds {:g} % of the motion; use "
-                   "a time step of {:g} or shorter, or keyword tolerance",
-                   fix->id, update->ntimestep, 100.0 * all.large / all.all,
-                   100.0 * LargeErrors::LARGE, rounded_down(0.5 * std::fabs(step.length())));
 }
 
 /// Warns once for these histories, which keep their number of values.
@@ -193,51 +163,34 @@ void Motion::warn_of_single_pass()
                    fix->id, scheme.values());
 }
 
-/// Measures the damping of momenta by forces in a step.  f: the forces of all fixes.  Collective.
-void Motion::measure_friction(double **f)
+/// Warns once if bodies would not have the temperature of fix langevin within half a percent, and
+/// ends the run if they would miss it by a tenth.  Collective.
+void Motion::warn_of_langevin()
 {
-  if (!step.tolerance)
-    damping = FrictionOfForces(lmp, fix, bodies, ownership, sites).part(f, step.length());
-}
-
-/// A measurement evaluates forces five times; the intervals between measurements grow by an eighth.
-void Motion::look_at_contacts(double **f)
-{
-  constexpr bigint FIRST = 10, PART = 8;
-  if (!watches || update->ntimestep < next_look) return;
-  const bigint done = update->ntimestep - update->firststep;
-  if (done >= FIRST) {
-    measure_friction(f);
-    tell_friction();
+  constexpr double ACCURATE = 0.005, WRONG = 0.1, SHORTER_PART = 0.95;
+  if (warned_langevin || step.tolerance) return;
+  for (const auto *other : modify->get_fix_by_style("^langevin$")) {
+    const double damp = damping_time(other), size = std::fabs(step.length());
+    if (!(damp > 0.0) || !shared_atom(lmp, ownership, other)) continue;
+    const auto warmth = [this](double part) {
+      return friction_response(step.scheme(), part);
+    };
+    double part = size / damp;
+    const double found = warmth(part);
+    if (std::fabs(found - 1.0) <= ACCURATE) continue;
+    while (!(std::fabs(warmth(part) - 1.0) <= ACCURATE)) part *= SHORTER_PART;
+    const std::string text =
+        fmt::format("Fix gear/quat {}: {} takes {:.2g} of a momentum in a step, and bodies with {} "
+                    "values would {}; "
+                    "use a time step of {:g} or shorter, or a damp of {:g} or longer",
+                    fix->id, name_of(other), size / damp, step.scheme().values(),
+                    std::isfinite(found) ? fmt::format("have {:.3g} of its temperature", found)
+                                         : "gain energy without bound",
+                    rounded_down(part * damp), rounded_up(size / part));
+    if (!(std::fabs(found - 1.0) <= WRONG)) error->all(FLERR, text);
+    warned_langevin = true;
+    if (comm->me == 0) error->warning(FLERR, text);
   }
-  next_look = update->ntimestep + std::max(FIRST, done / PART);
-}
-
-/// Rank 0 warns once if this damping is too strong for the histories.  Collective.
-void Motion::tell_friction()
-{
-  const ChoiceOfValues scene = scene_of(MotionSums());
-  const Scheme &scheme = step.scheme();
-  watches = false;
-  if (step.tolerance || warned_friction) return;
-  watches = scene.noise == Noise::COLLISIONS;
-  if (!scene.too_damped(scheme)) return;
-  watches = false;
-  warned_friction = true;
-  if (comm->me != 0) return;
-  const double part = friction_error(scheme, damping);
-  const std::string effect = std::isfinite(part)
-      ? fmt::format("which {} values follow with an error of {:.2g} %", scheme.values(), 100 * part)
-      : fmt::format("with which bodies of {} values gain energy", scheme.values());
-  const bool automatic = args.automatic_values;
-  const double most = automatic ? scene.largest_damping(args.scheme)
-                                : largest_friction(scheme, ChoiceOfValues::LARGEST_ERROR);
-  error->warning(
-      FLERR,
-      "Fix gear/quat {}: forces take {:.2g} of a momentum in a step, {}; use a time step "
-      "of {:g} or shorter{}",
-      fix->id, damping, effect, rounded_down(std::fabs(step.length()) * most / damping),
-      automatic ? "" : ", or values auto");
 }
 
 /// Returns the reason to start histories again with another number of values, null for none.

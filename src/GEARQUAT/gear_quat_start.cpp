@@ -96,18 +96,9 @@ bool Start::run()
   for (auto &one : starters) {
     if (!one.needed) continue;
     one.seed_local(3, h);
-    const Noise noise = noise_of_forces(lmp, [&one](int i) {
-      return one.ownership->in_body(i);
-    });
     if (comm->me != 0) continue;
     utils::logmesg(lmp, "Fix gear/quat {}: start with known forces only (order 2), because {}\n",
                    one.fix->id, why);
-    const std::string remedy = remedy_for_noise(one.scheme, noise);
-    if (!remedy.empty())
-      utils::logmesg(
-          lmp,
-          "Fix gear/quat {}: random forces heat bodies with many values; use {} instead of {}\n",
-          one.fix->id, remedy, one.scheme.values());
   }
   return false;
 }

@@ -125,7 +125,6 @@ void Step::predict(double **f)
   const double h = integrator->step();
   time_step.begin();
   find_limits(h);
-  large_errors.begin_step(h);
   const auto check = [&](int ibody) {
     const BodyState &state = bodies.state_of(ibody);
     if (!tolerance && !blowup.limits.keep_velocities(state)) blowup.stop(ibody, state, h, f);
@@ -240,10 +239,7 @@ void Step::begin_fresh(double **f)
     seed_body(bodies, ibody, scaled_of(bodies, coupling.get(), ibody), acting(ibody), scheme(),
               integrator->step(), known);
   }
-  if (!bodies.fresh.empty()) {
-    bodies.take_in_fresh();
-    large_errors.settle(scheme().values());
-  }
+  if (!bodies.fresh.empty()) bodies.take_in_fresh();
   if (coupling) coupling->follow_changes(integrator->step());
 }
 
@@ -260,13 +256,11 @@ void Step::find_limits(double h)
   blowup.limits = MotionLimits(h, longest);
 }
 
-/// Tests a corrected state, and notes its error.
+/// Tests a corrected state.
 inline void Step::examine(int ibody, double **f)
 {
   const BodyState &state = bodies.state_of(ibody);
   if (!blowup.limits.keep(state)) blowup.stop(ibody, state, integrator->step(), f);
-  if (!tolerance && ibody < bodies.nowned())
-    large_errors.note(bodies.body_at(ibody), state, bodies.load_of(ibody), bodies.last_of(ibody));
 }
 
 void Step::check_loads(double **f)

@@ -22,7 +22,6 @@
 #include "gear_quat_blowup.h"
 #include "gear_quat_coupling.h"
 #include "gear_quat_fixes.h"
-#include "gear_quat_large_errors.h"
 #include "gear_quat_scene.h"
 #include "gear_quat_sites.h"
 #include "gear_quat_time_step.h"
@@ -93,7 +92,6 @@ class Step : protected Pointers {
 
   TimeStep time_step;
   Blowup blowup;
-  LargeErrors large_errors;                ///< without keyword tolerance
   std::unique_ptr<Tolerance> tolerance;    ///< null: the step is LAMMPS' own
   std::unique_ptr<Coupling> coupling;      ///< null: bodies move by their own loads
 

@@ -59,7 +59,7 @@ void Thermostat::count_freedoms()
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     if (!is_thermostatted(ibody, ROTATION)) continue;
     const RigidBody &rigid = bodies.rigid_of(ibody);
-    here += domain->dimension == 2 ? rigid.inertia[2] > 0.0 : rigid.rotational_freedoms();
+    here += rigid.freedoms(domain->dimension) - domain->dimension;
   }
   total.weigh();
   freedoms[TRANSLATION] = total.freedoms();

@@ -6,6 +6,7 @@
 #include "gear_quat_tolerance.h"
 
 #include "gear_quat_known_styles.h"
+#include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
 

@@ -8,6 +8,7 @@ from scenes import one_after_the_other, placed
 
 O, C, LENGTH = 15.9994, 12.011, 1.16
 
+
 # CO2 with its carbon off the axis; the first molecule rotates about the axis of the smallest moment
 def carbon_dioxide(bend, spin, tumble=0.002, words="", dt=1.0, steps=200, n=1, **settings):
     sites = np.array([[-LENGTH, 0, 0], [0, bend, 0], [LENGTH, 0, 0]])
@@ -42,9 +43,7 @@ def test_refused_with_the_smallest_moment(lmp_wheel, bend, smallest):
 
 def test_what_is_followed_is_not_refused(lmp_wheel):
     """The fastest of these rotations becomes unstable after a thousand steps; it is stable for a hundred more than the trial."""
-    decks = [
-        carbon_dioxide(bend, spin, steps=100) for bend in (0.02, 0.002) for spin in (0.1, 0.2, 0.3)
-    ]
+    decks = [carbon_dioxide(bend, spin, steps=100) for bend in (0.02, 0.002) for spin in (0.1, 0.2, 0.3)]
     for table in lmp_wheel.succeed(one_after_the_other(decks)).thermo:
         assert table["KinEng"][-1] == pytest.approx(table["KinEng"][0], rel=3e-4)
 
@@ -76,3 +75,31 @@ def test_a_run_of_no_steps_is_not_refused(lmp_wheel):
     """Run 0 can be used to print energies, or to scale velocities, so that the next run may be stable."""
     deck = carbon_dioxide(0.02, 2.7, run="run 0\nvelocity all scale 1.0\nrun 20")
     assert len(lmp_wheel.succeed(deck).thermo) == 2
+
+
+def test_bodies_in_two_dimensions_turn_about_z_only(lmp_wheel):
+    """About the axis of its smallest moment no body can turn."""
+    deck = carbon_dioxide(0.02, 0.0, tumble=0.02, n=12, steps=5).replace("boundary", "dimension 2\nboundary", 1)
+    result = lmp_wheel.succeed(deck + "fix flat all enforce2d\nrun 5\n")
+    assert "will turn" not in result.words and "time step of" not in result.words
+
+
+def patchy(light, words="", omega=300.0):
+    """Particles with a mass at the center and patches of nearly no mass."""
+    sites = np.array([[0.0, 0, 0], [0.5, 0, 0], [-0.25, 0.4, 0]])
+    velocities = np.cross([0, 0, omega], sites)
+    masses = f"mass 1 1.0\nmass 2 {light}"
+    return placed(
+        [sites], velocities, kinds=[1, 2, 2], masses=masses, fix=f"gear/quat molecule {words}", dt=0.005, steps=50
+    )
+
+
+def test_patches_without_mass(lmp_wheel):
+    """No step is advised, since the rotation is an artifact of the masses; both remedies work."""
+    told = "nearly all of its mass is at its center; give its outer atoms more mass, or state larger moments of inertia"
+    result = lmp_wheel.refuse(patchy(1e-6), told)
+    assert "time step" not in result.words
+    lmp_wheel.succeed(patchy(0.5, omega=10.0))
+    line = "1\n1 1.0 0 0 0 0.1 0.1 0.2 0 0 0 0 0 0 0 0 2.0 0 0 0\n"
+    (lmp_wheel.folder / "bodies").write_text(line)
+    lmp_wheel.succeed(patchy(1e-6, "infile bodies"))

@@ -167,11 +167,11 @@ TEST(Choice, OtherMethodsHaveTheirOwnNumber)
   }
 }
 
-TEST(Choice, WithRandomForcesAndCollisionsNothingHeats)
+TEST(Choice, WithRandomAndDissipativeForcesNothingHeats)
 {
   for (const Formulation formulation : {FIRST, SECOND})
     for (const bool is_tuned : {false, true})
-      for (const Noise noise : {Noise::RANDOM, Noise::COLLISIONS})
+      for (const Noise noise : {Noise::RANDOM, Noise::DISSIPATIVE})
         for (const double edge : {0.0, 0.5}) {
           ChoiceOfValues noisy = scene(edge);
           noisy.noise = noise;
@@ -184,41 +184,16 @@ TEST(Choice, WithRandomForcesAndCollisionsNothingHeats)
   noisy.noise = Noise::RANDOM;
   EXPECT_EQ(noisy.choose(automatic(SECOND)).scheme.values(), 4);
   EXPECT_TRUE(noisy.choose(automatic(SECOND)).scheme.tuned);
+  noisy.noise = Noise::DISSIPATIVE;
+  EXPECT_EQ(noisy.choose(automatic(SECOND)).scheme.values(), 4);
+  EXPECT_FALSE(noisy.choose(automatic(SECOND)).scheme.tuned);
   // a given corrector is kept in any case
-  noisy.noise = Noise::COLLISIONS;
   noisy.may_be_gear = false;
   EXPECT_TRUE(noisy.choose(automatic(SECOND)).scheme.tuned);
 }
 
-TEST(Choice, FrictionIsFollowed)
+TEST(Choice, FrictionOfAThermostatIsFollowed)
 {
-  using Choice = ChoiceOfValues;
-  for (const Formulation formulation : {FIRST, SECOND})
-    for (const bool is_tuned : {false, true})
-      for (const double part : {0.001, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25})
-        for (const Noise noise : {Noise::NONE, Noise::RANDOM}) {
-          Choice damped = scene(0.0);
-          damped.damping = part;
-          damped.noise = noise;
-          const Scheme wanted = automatic(formulation, is_tuned);
-          const Scheme chosen = damped.choose(wanted).scheme;
-          EXPECT_LE(friction_error(chosen, part), Choice::LARGEST_ERROR) << chosen << ' ' << part;
-          EXPECT_FALSE(damped.too_damped(chosen));
-          EXPECT_GE(damped.largest_damping(wanted), 0.25);
-          if (part == 0.001 && noise == Noise::NONE) EXPECT_EQ(chosen.values(), wanted.values());
-        }
-  // too strong for all of them: the most accurate one, with a warning
-  Choice strong = scene(0.0);
-  strong.damping = 0.7;
-  EXPECT_TRUE(strong.too_damped(strong.choose(automatic(SECOND)).scheme));
-  EXPECT_FALSE(strong.choose(automatic(SECOND)).scheme.tuned);
-  // a present choice has a hysteresis
-  Choice close = scene(0.0);
-  while (friction_error(automatic(SECOND), close.damping) <= Choice::LARGEST_ERROR)
-    close.damping += 0.0005;
-  EXPECT_NE(close.choose(automatic(SECOND)).scheme.values(), 9);
-  EXPECT_EQ(close.choose(automatic(SECOND), 9).scheme.values(), 9);
-  // with a thermostat: the first number that follows it
   for (const double edge : {0.0, 0.5})
     for (const double friction : {0.0, 0.1, 0.2, 0.4}) {
       ChoiceOfValues hot = scene(edge);
@@ -266,8 +241,6 @@ TEST(Choice, AStatedNumberHasALimitOfItsOwn)
     stated.automatic = false;
     while (!stated.too_long(scheme)) stated.edge += 0.01;
     EXPECT_NEAR(stated.advised_part(scheme), 5.0 / 6.0, 0.04);
-    stated.damping = 0.6 * stated.edge;    // the motion of friction is no vibration
-    EXPECT_FALSE(stated.too_long(scheme));
     return stated.edge;
   };
   EXPECT_NEAR(longest(9, true), 0.40, 0.011);

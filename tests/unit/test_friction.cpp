@@ -55,18 +55,6 @@ TEST(FrictionLimit, IsWhereAFreeBodyBecomesUnstable)
   EXPECT_GT(found, 15);
 }
 
-TEST(Friction, AnErrorThatVanishesByChanceIsNoticed)
-{
-  Scheme scheme = scheme_of(SECOND, 4, 2);
-  double last = 0.0;
-  for (double part = 0.05; part < 0.54; part += 0.05) {
-    EXPECT_GE(friction_error(scheme, part), 0.99 * last) << part;    // of a grid below part
-    last = friction_error(scheme, part);
-  }
-  EXPECT_LT(std::fabs(friction_response(scheme, 0.5) - 1.0), 0.05);
-  EXPECT_GT(friction_error(scheme, 0.5), 0.1);
-}
-
 TEST(Friction, ABoundAndATrialHoldForAGas)
 {
   // a chain of one variable has a first integral; longer chains and other starts stay below it

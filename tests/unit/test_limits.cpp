@@ -4,6 +4,7 @@
 #include "gear_quat_limits.h"
 
 #include <limits>
+#include <string>
 
 using namespace LAMMPS_NS::GearQuat;
 
@@ -16,6 +17,43 @@ constexpr double H = 0.01, LENGTH = 20.0;
 BodyState at_rest()
 {
   return {{1, 2, 3}, {0.5, 0.5, 0.5, 0.5}, {0, 0, 0}, {0, 0, 0}};
+}
+
+/// True if a harmonic motion of this many radians per step keeps its energy within a factor of two.
+bool survives_oscillation(const Scheme &scheme, double radians)
+{
+  constexpr int STEPS = 5000;
+  const double h = 1.0;
+  const Integrator integrator(scheme, h);
+  const RigidBody body = {1.0, {0.0, 0.0, 0.0}};
+  BodyState state = {{1.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+  Load load = Load();
+  const auto pull = [&] {
+    load.force[0] = -radians * radians * state.center[0];
+  };
+  std::vector<double> history(scheme.size());
+  double *rows = history.data();
+  pull();
+  seed(scheme, body, local_series(body, state, load, h), h, h, rows);
+  for (int step = 0; step < STEPS; ++step) {
+    integrator.predict_center(rows);
+    integrator.center_state(body, rows, state);
+    pull();
+    integrator.correct_center(body, load, rows);
+    integrator.center_state(body, rows, state);
+    const double x = state.center[0], v = state.velocity[0] / radians;
+    if (!(x * x + v * v < 2.0)) return false;
+  }
+  return true;
+}
+
+/// The fastest harmonic motion that is stable, in radians per step.
+double on_trial(const Scheme &scheme)
+{
+  constexpr double GRAIN = 0.02;
+  int grains = 1;
+  while (survives_oscillation(scheme, GRAIN * (grains + 1))) ++grains;
+  return GRAIN * grains;
 }
 
 }    // namespace
@@ -86,17 +124,29 @@ TEST(Limits, AKickIsWhatALoadMakesOfVelocities)
 
 TEST(Limits, TheFastestOscillation)
 {
-  // velocities of a stable motion are bounded, and velocities of a motion 5 % faster are not; the
-  // limits are the ones in the manual, where spurious roots leave the unit circle
-  for (const auto &[values, limit] : {std::pair{4, 1.05}, {7, 0.71}, {9, 0.61}}) {
-    Scheme scheme;
-    scheme.rows = values;
-    scheme.tuned = true;
-    const double found = fastest_oscillation(scheme);
-    EXPECT_NEAR(found, limit, 0.03);
-    EXPECT_TRUE(survives_oscillation(scheme, 0.9 * limit));
-    EXPECT_FALSE(survives_oscillation(scheme, 1.1 * limit));
-  }
+  // the table is what a trial of every method gives; it fails with the row that the table should have
+  for (const Formulation formulation : {Formulation::SECOND, Formulation::FIRST})
+    for (const bool is_tuned : {false, true})
+      for (const bool other : {false, true}) {
+        const bool first = formulation == Formulation::FIRST;
+        std::string row, table;
+        for (int n = first ? FIRST_FEWEST : SECOND_FEWEST; n <= (first ? FIRST_MOST : SECOND_MOST);
+             ++n) {
+          Scheme scheme;
+          scheme.formulation = formulation;
+          scheme.rows = n;
+          scheme.tuned = is_tuned;
+          if (first)
+            scheme.predicted_momentum = other;
+          else if (is_tuned)
+            scheme.projection = other ? Projection::AUTO : Projection::YES;
+          else
+            scheme.velocity_c0 = other;
+          row += " " + std::to_string(on_trial(scheme));
+          table += " " + std::to_string(fastest_oscillation(scheme));
+        }
+        EXPECT_EQ(table, row) << first << is_tuned << other;
+      }
 }
 
 TEST(Limits, RoundedDown)
