@@ -103,22 +103,6 @@ def test_without_the_package_it_is_named(poses, monkeypatch, package, export):
         getattr(poses, export)()
 
 
-@pytest.mark.parametrize(
-    ("value", "error", "text"),
-    [
-        (77.516, 0.5335, "77.52 ± 0.53 K"),
-        (449.2, 35.03, "449 ± 35 K"),
-        (2.7388e-4, 1.906e-5, "(2.74 ± 0.19)e-4 K"),
-        (3.0e7, 2.0e5, "(3.000 ± 0.020)e7 K"),
-        (0.0, 0.25, "0.00 ± 0.25 K"),
-        (5.0, 0.0, "5 ± 0 K"),
-        (5.0, np.nan, "5 ± nan K"),
-    ],
-)
-def test_errors_have_two_digits(value, error, text):
-    assert Average("temperature", value, error, "K").text() == text
-
-
 def test_pictures_show_values_with_errors(poses):
     """And the units of the axes."""
     known = Averages(

@@ -19,6 +19,7 @@ from .bodies import axes_named, axis_groups, equal_moments
 from .diffusion import diffusion
 from .fluctuations import compressibility, dielectric_constant
 from .kinds import kinds, of_kind, too_many
+from .tables import with_error
 
 #: number of blocks of a run and number of groups of bodies; the scatter among them is the error of a correlation time
 LONG_BLOCKS, GROUPS = 5, 10
@@ -62,14 +63,7 @@ class Average(NamedTuple):
 
     def text(self):
         """Value and error as text, with two digits of the error: 0.312 ± 0.015 Å²/ps, (2.74 ± 0.19)e-4 Å²/fs."""
-        if not self.known or not self.error > 0.0:
-            return f"{self.value:.4g} ± {self.error:.2g} {self.unit}".rstrip()
-        last = math.floor(math.log10(self.error)) - 1
-        power = math.floor(math.log10(abs(self.value) or self.error))
-        power = power if not -4 < power < 6 else 0
-        value, error = (f"{number / 10.0**power:.{max(power - last, 0)}f}" for number in (self.value, self.error))
-        both = f"({value} ± {error})e{power}" if power else f"{value} ± {error}"
-        return f"{both} {self.unit}".rstrip()
+        return with_error(self.value, self.error, self.unit)
 
 
 class Averages(list):

@@ -54,7 +54,7 @@ def average_lines(averages):
         if one.known:
             lines.append(f"The {one.name} is {one.text()}.")
         elif np.isfinite(one.value):
-            lines.append(f"The {one.name} is {f'{one.value:.4g} {one.unit}'.rstrip()}, with an unknown error: {one.why}.")
+            lines.append(f"The {one.name} is {one.text()}, with an unknown error: {one.why}.")
         else:
             missing.setdefault(one.why, []).append(one.name)
     for why, names in missing.items():

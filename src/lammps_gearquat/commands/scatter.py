@@ -9,7 +9,7 @@ from gearquat_analysis.options import COUNT, FILE, POSITIVE, command, failing_cl
 
 from ..launch import LammpsError
 from ..trials.script import DeckError
-from .common import reading_options
+from .common import INTERRUPTED, reading_options
 
 FROM_ZERO = cloup.IntRange(min=0)
 #: options for new flights; for merged parts they are already determined
@@ -18,8 +18,6 @@ OF_FLIGHTS = ("deck", "temperature", "energy", "first", "count", "replay")
 OF_FOLDERS = ("temperature", "energy", "rotation", "largest", "sigma", "first", "count")
 #: the largest ratio of two neighboring temperatures, if there are several
 GAP = 3.0
-#: exit status after Ctrl-C, as of a shell
-INTERRUPTED = 130
 
 
 @command(
