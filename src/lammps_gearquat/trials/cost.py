@@ -38,7 +38,7 @@ DECADES = (1e-2, 1e-4, 1e-6, 1e-8)
 SAMPLES = 20  # of a reference in time
 #: number of runs at the step of the deck that fit into the budget; this determines the time of the trials
 RUNS_IN_BUDGET = 100
-SHARE_REFERENCE, SHARE_TIMING = 0.3, 0.15
+SHARE_REFERENCE, SHARE_TIMING, SHARE_PICTURE = 0.3, 0.15, 0.1
 FEWEST_STEPS, PROBE_STEPS = 8, 20
 PATIENCE = 30.0  # seconds by which any trial may exceed the expected time
 #: the part of the budget that may be spent before the trials
@@ -132,8 +132,8 @@ class Inquiry:
     end of trials.
     """
 
-    def __init__(self, deck, budget, timings=5, norm=0):
-        self.deck, self.budget, self.timings, self.norm = deck, budget, timings, norm
+    def __init__(self, deck, budget, norm=0):
+        self.deck, self.budget, self.norm = deck, budget, norm
         self.pace, self.overhead, self.failures = {}, 0.0, {}
         self.before, self.truth = budget.spent(), None
 
@@ -341,11 +341,10 @@ class Inquiry:
         costs.trials.sort(key=lambda pair: (methods.index(pair[0].keywords), pair[0].steps))
 
     # --- 4. the wall time -----------------------------------------------------------------------------
-    def repeat(self, trials):
-        """Run trials again, interleaved, until each has ``timings`` wall times."""
-        trials = [trial for trial in trials if len(trial.seconds) < self.timings]
-        reserve = drift.SHARE * self.budget.seconds
-        for _ in range(self.timings - 1):
+    def repeat(self, trials, timings, reserve):
+        """Run trials again, interleaved, until each has ``timings`` wall times or only ``reserve`` seconds are left."""
+        trials = [trial for trial in trials if len(trial.seconds) < timings]
+        for _ in range(timings - 1):
             # all of them or none: what was timed once, among other trials, is not compared with what was repeated
             if 1.5 * sum(self.expected(trial.keywords, trial.steps) for trial in trials) > self.budget.left() - reserve:
                 return
@@ -389,7 +388,7 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
     unit = evaluate.decade(deck.size) if norm < 2 else 1.0
     many = len(deck.scene.bodies) >= MANY and not (errors or time)
     errors = sorted(errors or [unit * decade for decade in DECADES], reverse=True)
-    inquiry = Inquiry(deck, budget, timings, norm)
+    inquiry = Inquiry(deck, budget, norm)
     inquiry.probe()
     inquiry.check(tries)
     whole, reason = (time, "") if time else inquiry.affordable_end()
@@ -418,7 +417,9 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
         )
     inquiry.refine(costs, wanted)
     for _ in range(ATTEMPTS):  # other methods may matter when times are better known
-        inquiry.repeat(worth_timing(costs, wanted))
+        inquiry.repeat(worth_timing(costs, wanted), timings, drift.SHARE * budget.seconds)
+    # the others for the picture, if they are quick
+    inquiry.repeat([trial for trial, _ in costs.trials], min(timings, 2), (1.0 - SHARE_PICTURE) * budget.left())
     inquiry.choose(costs, errors)
     costs.notes += known_until(reference.time, doubt, [e for e in errors if e not in judged])
     costs.notes += warnings_of([reference, confirmation, *(trial for trial, _ in costs.trials)])
