@@ -94,6 +94,11 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   comm_forward = ownership->max_forward();
   comm_reverse = sizeof(Load) / sizeof(double);
 
+  if (group->dynamic[igroup])
+    error->all(
+        FLERR,
+        "Fix gear/quat: group {} is dynamic, but bodies keep their atoms; use a static group",
+        group->names[igroup]);
   create_bodies();
   if (bodies->number() == 0 && args->mol.empty())
     error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
@@ -237,6 +242,7 @@ void FixGearQuat::setup(int vflag)
   tally_virial(vflag, atom->f);
   show_bodies();
   motion_acts = true;
+  if (!reported) warn_of_excluded_images(lmp, this, *bodies, *ownership, *sites);
   if (!reported) report_scene(lmp, this, *args, *fleet, *bodies, *ownership, *sites);
   reported = true;
 }
@@ -477,7 +483,18 @@ double FixGearQuat::compute_array(int i, int j)
 
 bigint FixGearQuat::dof(int tgroup)
 {
-  return ownership->count_atoms(group->bitmask[tgroup]).removed_freedoms;
+  const Comparison found = ownership->count_atoms(group->bitmask[tgroup]);
+  if (found.divided && !(told_of_groups & group->bitmask[tgroup])) {
+    told_of_groups |= group->bitmask[tgroup];
+    if (comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix gear/quat {}: a compute takes the temperature of group {}, which has only "
+          "some atoms of bodies such as {}; it counts all degrees of freedom of these "
+          "atoms, so the temperature is too low; use a group of whole bodies",
+          id, group->names[tgroup], found.divided);
+  }
+  return found.removed_freedoms;
 }
 
 int FixGearQuat::modify_param(int narg, char **arg)

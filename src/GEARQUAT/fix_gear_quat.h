@@ -125,6 +125,7 @@ class FixGearQuat : public Fix {
 
   bool met_atoms = false;        // an earlier run has compared bodies and atoms
   bool told_of_ids = false;      ///< a warning about changed molecule IDs was given
+  int told_of_groups = 0;        ///< their bits: a warning about parts of bodies was given
   bool reported = false;         // the report was printed
   bool min_projected = false;    // forces were projected before a minimization begins
   int min_vflag = 0;             // vflag of the current evaluation in a minimization

@@ -207,6 +207,7 @@ void Comparer::compare(const AtomsOfBody &body)
   if (body.body_mass > 0.0 &&
       (std::fabs(mass - body.body_mass) > SAME_MASS * body.body_mass || !same_masses(body)))
     found.mass_changed = id;
+  if (body.in_group > 0 && body.in_group < body.natoms) found.divided = id;
   if (body.in_group == body.natoms)
     found.removed_freedoms += domain->dimension * body.natoms + body.own_freedoms - body.freedoms;
 }
@@ -262,7 +263,8 @@ Comparison Comparer::all()
   all.removed_freedoms = over_ranks(MPI_SUM, found.removed_freedoms, world);
   all.broken = over_ranks(MPI_MAX, found.broken, world);
   if (found.broken != all.broken) all.left = all.had = 0;
-  bigint here[] = {all.left, all.had, found.mass_changed, found.torn, found.cut, found.reshaped};
+  bigint here[] = {all.left,  all.had,        found.mass_changed, found.torn,
+                   found.cut, found.reshaped, found.divided};
   const auto largest = over_ranks(MPI_MAX, here, world);
   all.left = largest[0];
   all.had = largest[1];
@@ -270,6 +272,7 @@ Comparison Comparer::all()
   all.torn = (tagint) largest[3];
   all.cut = (tagint) largest[4];
   all.reshaped = (tagint) largest[5];
+  all.divided = (tagint) largest[6];
   return all;
 }
 

@@ -53,7 +53,10 @@ void OtherFixes::init()
     const ActOnAtoms *row = act_on_atoms(other);
     if (!row) continue;
     const tagint atom = shared_atom(other);
-    if (row->act == ActOnAtoms::SINGLE || row->act == ActOnAtoms::IMPULSE) {
+    const bool exchanges = row->act == ActOnAtoms::EXCHANGE;
+    if (exchanges && !args.mol.empty()) {
+      watched.push_back(other);
+    } else if (exchanges || row->act == ActOnAtoms::SINGLE || row->act == ActOnAtoms::IMPULSE) {
       refuse(other, *row, atom);
     } else if (row->act == ActOnAtoms::REFLECTION) {
       watched.push_back(other);

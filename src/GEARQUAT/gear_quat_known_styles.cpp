@@ -209,7 +209,7 @@ static constexpr ActOnAtoms ACTS_ON_ATOMS[] = {
      "with gjf it exchanges velocities and scales forces before the step",
      "leave out its keyword gjf"},
     {"^ehex", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "displaces atoms besides scaling velocities",
-     "use fix heat without a region"},
+     "use fix heat without a region, on groups of whole bodies"},
     {"^thermal/conductivity", ActOnAtoms::SINGLE, ActOnAtoms::GROUP,
      "exchanges the energies of two atoms", GROUP},
     {"^viscosity", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "exchanges momenta of two atoms", GROUP},
@@ -244,7 +244,13 @@ static constexpr ActOnAtoms ACTS_ON_ATOMS[] = {
     {"^neighbor/swap", ActOnAtoms::SINGLE, ActOnAtoms::GROUP,
      "exchanges types of two atoms (later than 4 Feb 2025)", GROUP},
     {"^sgcmc", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "changes types of atoms", GROUP},
-    {"^gcmc", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "inserts, removes and moves atoms", GROUP},
+    {"^gcmc", ActOnAtoms::EXCHANGE, ActOnAtoms::GROUP,
+     "inserts and removes atoms or, with keywords mol and rigid, whole bodies; without rigid it "
+     "may "
+     "move them",
+     "to exchange whole bodies use its keywords mol and rigid, without MC moves, and keyword mol "
+     "of "
+     "fix gear/quat"},
     {"^charge/regulation", ActOnAtoms::SINGLE, ActOnAtoms::GROUP, "inserts and removes ions",
      GROUP},
     {"^gemc", ActOnAtoms::SINGLE, ActOnAtoms::ANY,

@@ -86,6 +86,7 @@ struct ActOnAtoms {
                     ///< them
     REFLECTION,     ///< mirrors single atoms that reach a position
     IMPULSE,        ///< a force that is inversely proportional to the time step
+    EXCHANGE,       ///< inserts and removes whole molecules, which may be bodies
     SINGLE          ///< changes atoms one by one
   } act;
   enum {

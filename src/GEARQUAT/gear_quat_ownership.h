@@ -40,6 +40,7 @@ struct Former;
 /// Result of a comparison, the same on all ranks; bodies are given by their IDs, 0 for none.
 struct Comparison {
   bigint removed_freedoms = 0;    ///< removed by rigidity from bodies wholly in the group
+  tagint divided = 0;             ///< a body with some of its atoms in the group
   tagint broken = 0;              ///< a body that has lost atoms, or that is given by several IDs
   bigint left = 0, had = 0;       ///< its atoms now and before
   tagint mass_changed = 0;        ///< a body whose atoms have another mass, center or inertia

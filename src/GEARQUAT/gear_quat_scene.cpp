@@ -10,21 +10,26 @@
 #include "gear_quat_forces.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
+#include "gear_quat_sites.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "compute.h"
+#include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "output.h"
+#include "pair.h"
 #include "update.h"
 #include "utils.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -249,6 +254,84 @@ void GearQuat::warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Argu
                         "the rest, such as molecule {}, of which {} of {} atoms are in bodies; if "
                         "all of these atoms are to move as rigid molecules, {}",
                         number, example, of_example[0], of_example[1], remedy(lmp, fix, args));
+}
+
+/* ----------------------------------------------------------------------
+   bodies that meet their own images
+------------------------------------------------------------------------- */
+
+/// As NPair::exclusion(), for two atoms of the same molecule or of none.
+static bool is_excluded(const LAMMPS *lmp, int i, int j)
+{
+  const Atom *atom = lmp->atom;
+  const Neighbor *list = lmp->neighbor;
+  const int *mask = atom->mask;
+  if (list->nex_type && list->ex_type[atom->type[i]][atom->type[j]]) return true;
+  for (int m = 0; m < list->nex_group; ++m)
+    if ((mask[i] & list->ex1_bit[m] && mask[j] & list->ex2_bit[m]) ||
+        (mask[i] & list->ex2_bit[m] && mask[j] & list->ex1_bit[m]))
+      return true;
+  for (int m = 0; m < list->nex_mol; ++m)
+    if (mask[i] & mask[j] & list->ex_mol_bit[m] &&
+        (atom->molecule[i] == atom->molecule[j]) == (list->ex_mol_intra[m] != 0))
+      return true;
+  return false;
+}
+
+/// Unwrapped positions, which ghosts receive from their atoms, tell images from the body itself.
+static bool excludes_image(const LAMMPS *lmp, const std::array<std::vector<double>, 4> &label,
+                           double period, int i, int j)
+{
+  const Atom *atom = lmp->atom;
+  double apart2 = 0.0, off = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const double apart = atom->x[i][k] - atom->x[j][k];
+    apart2 += apart * apart;
+    off = std::max(off, std::fabs(apart - (label[k][i] - label[k][j])));
+  }
+  return off > 0.5 * period && apart2 < lmp->force->pair->cutsq[atom->type[i]][atom->type[j]] &&
+      is_excluded(lmp, i, j);
+}
+
+void GearQuat::warn_of_excluded_images(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
+                                       Ownership &ownership, const Sites &sites)
+{
+  const Force *force = lmp->force;
+  if (!lmp->neighbor->exclude || !exerts_forces(force->pair, force->pair_style)) return;
+  double period = HUGE_VAL, extent = 0.0;
+  for (int k = 0; k < 3; ++k)
+    if (lmp->domain->periodicity[k]) period = std::min(period, lmp->domain->prd[k]);
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    extent = std::max(extent, bodies.body_at(ibody).extent);
+  if (2.0 * over_ranks(MPI_MAX, extent, lmp->world) + force->pair->cutforce < period) return;
+
+  const int nlocal = lmp->atom->nlocal, nall = nlocal + lmp->atom->nghost;
+  std::array<std::vector<double>, 4> label;    // unwrapped positions, and IDs of bodies that turn
+  for (auto &one : label) one.assign(nall, 0.0);
+  for (const Site &site : sites) {
+    double x[3], expected[3];
+    sites.unwrapped(site, x, expected);
+    for (int k = 0; k < 3; ++k) label[k][site.atom] = x[k];
+    const Body &body = bodies.body_at(site.body);
+    const bool turns = body.rigid.rotational_freedoms() > 0 && !(body.off & torque_off(2));
+    if (turns) label[3][site.atom] = (double) body.id;
+  }
+  for (auto &one : label) ownership.spread_labels(one);
+  std::map<double, std::vector<int>> ghosts;    // of each body
+  for (int j = nlocal; j < nall; ++j)
+    if (label[3][j] > 0.0) ghosts[label[3][j]].push_back(j);
+  tagint found = 0;
+  for (int i = 0; i < nlocal && !found && !ghosts.empty(); ++i)
+    for (const int j : ghosts[label[3][i]])
+      if (excludes_image(lmp, label, period, i, j)) found = (tagint) label[3][i];
+  found = over_ranks(MPI_MAX, found, lmp->world);
+  if (found && lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        "Fix gear/quat {}: body {} is so long that it meets its own periodic "
+                        "images, and neigh_modify exclude leaves out these pairs too, which would "
+                        "turn it; do not exclude its pairs, use a larger box, or switch its "
+                        "torque off",
+                        fix->id, found);
 }
 
 /// Bodies are the molecules at the definition of the fix.

@@ -21,7 +21,9 @@ class LAMMPS;
 
 namespace LAMMPS_NS::GearQuat {
 
+class Bodies;
 class Ownership;
+class Sites;
 struct Arguments;
 struct Fleet;
 
@@ -39,6 +41,11 @@ void warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Arguments &arg
 /// then.  Collective.
 bool warn_of_molecule_ids(LAMMPS *lmp, const Fix *fix, const Arguments &args,
                           const Ownership &ownership);
+
+/// Rank 0 warns if neigh_modify exclude leaves out pairs of a body with its own periodic images,
+/// which turn it.  Ghost atoms exist.  Collective.
+void warn_of_excluded_images(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
+                             Ownership &ownership, const Sites &sites);
 
 /// The name of a style that reads velocities between prediction and correction, or empty.  owner:
 /// the calling fix.

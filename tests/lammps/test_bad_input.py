@@ -403,6 +403,13 @@ def test_empty_group(lmp):
     lmp.refuse(deck, "no atom of the fix group is in a body")
 
 
+def test_dynamic_group(lmp):
+    group = "region some block -5 5 -5 5 -5 5\ngroup some {words}\nfix move some"
+    deck = two_molecules().replace("fix move all", group)
+    lmp.refuse(deck.format(words="dynamic all region some every 1"), "group some is dynamic, but bodies keep their atoms")
+    lmp.succeed(deck.format(words="region some"))
+
+
 def test_group_that_becomes_dynamic(lmp):
     """LAMMPS refuses it, because the fix does not declare support: bodies do not change their atoms."""
     after = "variable some atom x<100\ngroup some dynamic all var some every 1\nrun 1"

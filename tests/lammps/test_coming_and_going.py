@@ -376,3 +376,83 @@ def test_rows_may_be_asked_for_before_a_body_is_there(lmp_tree):
     thermo = lmp_tree.succeed(deck).thermo[-1]
     assert thermo["v_id"] == [0, 1, 1, 1]
     assert thermo["f_move[2][28]"] == [0, 0, 0, 0]
+
+
+# --- exchange of molecules with a reservoir ------------------------------------------------------
+CO2 = """carbon dioxide
+
+3 atoms
+
+Coords
+
+1 0 0 0
+2 1.16 0 0
+3 -1.16 0 0
+
+Types
+
+1 1
+2 2
+3 2
+"""
+GAS = """
+units real
+atom_style molecular
+atom_modify map yes
+pair_style lj/cut 9.0
+region box block 0 22 0 22 0 22
+create_box 2 box
+mass 1 12.011
+mass 2 15.9994
+pair_coeff 1 1 0.0537 2.80
+pair_coeff 2 2 0.1570 3.05
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+molecule co2 co2.mol
+{start}
+group gas type 1 2
+fix move gas gear/quat molecule temp 300 300 100 {mol}
+fix mc gas gcmc 10 5 {moves} 0 4712 300.0 -6.0 0.5 mol co2 {rigid} tfac_insert 1.66667 {energy} group gas
+compute tg gas temp
+compute_modify tg dynamic/dof yes
+variable n equal count(gas)/3
+variable there equal f_mc[4]-f_mc[6]
+variable ke equal f_move[1]+f_move[2]
+thermo_style custom step c_tg v_n v_there v_ke f_move[10]
+thermo_modify lost error norm no
+thermo 50
+dump poses all custom 50 poses.dump id mol xu yu zu
+dump_modify poses sort id format float %.17g
+run 200
+run 200
+"""
+FILLED = "create_atoms 0 random 8 887 box mol co2 8871 overlap 3.0\nvelocity all create 300 4711"
+
+
+def gas(lmp, start="", mol="mol co2", moves=0, rigid="rigid move", energy=""):
+    (lmp.folder / "co2.mol").write_text(CO2)
+    return GAS.format(start=start, mol=mol, moves=moves, rigid=rigid, energy=energy)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("energy", ["", "full_energy"])
+@pytest.mark.parametrize("start", ["", FILLED])
+def test_molecules_of_a_reservoir(lmp_wheel, start, energy, ranks):
+    """Fix gcmc inserts and removes whole bodies, in several runs, from an empty and from a filled box; in 0.4.0 the second
+    run, or the first one of a filled box, was refused."""
+    tables = lmp_wheel.succeed(gas(lmp_wheel, start, energy=energy), ranks=ranks).thermo
+    before = 8 if start else 0
+    for table in tables:
+        assert table["v_n"] == [before + there for there in table["v_there"]]
+    end = {name: values[-1] for name, values in tables[-1].items()}
+    assert end["v_n"] > before + 10 and end["v_n"] > tables[0]["v_n"][-1]
+    assert end["c_tg"] == pytest.approx(2 * end["v_ke"] / ((5 * end["v_n"] - 3) * BOLTZMANN), rel=1e-6)
+    shapes = last_frame(lmp_wheel.folder / "poses.dump")[:, -3:].reshape(-1, 3, 3)
+    for one in (1, 2):
+        assert np.linalg.norm(shapes[:, one] - shapes[:, 0], axis=1) == pytest.approx(1.16, abs=1e-9)
+
+
+def test_a_reservoir_that_is_not_told_of_bodies(lmp_wheel):
+    instead = "to exchange whole bodies use its keywords mol and rigid, without MC moves, and keyword mol"
+    lmp_wheel.refuse(gas(lmp_wheel, FILLED, mol="", rigid=""), instead)
+    moved = lmp_wheel.refuse(gas(lmp_wheel, FILLED, moves=5, rigid=""), instead)
+    assert "fix mc (gcmc) has moved atom" in moved.words

@@ -126,6 +126,17 @@ def test_heat_is_what_it_says(lmp_wheel):
     assert gained == pytest.approx(0.1 * 0.25 * 400, rel=1e-3)
 
 
+def test_heat_from_molecules_to_others(lmp_wheel):
+    """The way out that the refusal of fix ehex names: two groups, the energy of all is constant."""
+    groups = "group hot molecule 1:5\ngroup cold molecule 20:24\n"
+    flow = "fix in hot heat 1 0.05\nfix out cold heat 1 -0.05\ncompute t cold temp\n"
+    run = "thermo_style custom step etotal c_t\nrun 160"
+    deck = molecules(lmp_wheel, groups + flow, dt=0.25, steps=160, run=run)
+    end, plain = (lmp_wheel.succeed(text).thermo[0] for text in (deck, deck.replace("0.05", "0.0001")))
+    assert end["TotEng"][-1] == pytest.approx(plain["TotEng"][-1], abs=0.01)
+    assert end["c_t"][-1] < plain["c_t"][-1] - 30
+
+
 def test_the_last_scaling_of_a_run_is_not_lost_or_taken_twice(lmp_wheel):
     """run n + run n = run 2n, with a restart or pre no between."""
     bath = "fix bath all temp/berendsen 300 300 50"
@@ -149,7 +160,7 @@ def test_a_scaling_that_tears_bodies_ends_the_run(lmp_wheel, ranks):
 # --- refused -------------------------------------------------------------------------------------
 REFUSED = {
     "temp/csld 300 300 100 4711": "use fix temp/csvr or temp/berendsen",
-    "ehex 1 0.1": "use fix heat without a region",
+    "ehex 1 0.1": "use fix heat without a region, on groups of whole bodies",
     "thermal/conductivity 10 x 20": "give it a group without atoms of bodies",
     "viscosity 10 x z 20": "give it a group without atoms of bodies",
     "oneway 1 half +x": "give it a group without atoms of bodies",

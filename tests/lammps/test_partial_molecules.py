@@ -29,6 +29,27 @@ def test_only_the_oxygens(lmp_tree, style, ranks):
     assert ("custom" in style) != ("include molecule" in found[0][4])
 
 
+TEMPERATURES = """
+group some molecule 1:13
+compute all all temp
+compute o oxygens temp
+compute h hydrogens temp
+compute some some temp
+thermo_style custom step c_all c_o c_h c_some
+thermo_modify norm no
+"""
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_temperature_of_parts(lmp, ranks):
+    """One warning for each group with parts of bodies, also in several runs; none for groups of whole bodies."""
+    text = water(water_data(lmp.folder / "data.water"), "gear/quat molecule", steps=1, before=GROUPS)
+    text = text.replace("fix_modify move energy yes\n", TEMPERATURES)
+    told = lmp.succeed(text + "\nrun 1", ranks=ranks).words
+    found = re.findall(r"temperature of group (\w+), which has only some atoms of bodies such as \d+", told)
+    assert sorted(found) == ["hydrogens", "oxygens"]
+
+
 @pytest.mark.parametrize("style", ["molecule", "group 1 oxygens", "custom v_body"])
 def test_the_advice(lmp_tree, style):
     """With the suggested command the molecules are whole."""

@@ -465,3 +465,45 @@ def test_no_word_of_a_body_that_meets_its_own_image(lmp_tree):
     near = two_molecules(before="pair_style lj/cut 10\npair_coeff * * 1 0.5", after="run 0")
     assert ACTS.search(lmp_tree.succeed(near.replace("lj/cut 10", "lj/cut 2")).output)
     assert not ACTS.search(lmp_tree.succeed(near.replace("-10 10 -10 10 -10 10", "-4 8 -4 8 -4 8")).output)
+
+
+# --- bodies that meet their own images -----------------------------------------------------------
+ROD = """
+units lj
+atom_style molecular
+atom_modify map yes
+region box block 0 {edge} 0 5 0 5
+create_box 1 box
+mass 1 1.0
+create_atoms 1 single 0.75 2.5 2.5
+create_atoms 1 single 1.9 2.5 2.5
+create_atoms 1 single 3.1 2.5 2.5
+create_atoms 1 single 4.25 2.5 2.5
+set group all mol 1
+pair_style lj/cut 2.0
+pair_modify shift yes
+pair_coeff * * 1.0 1.3
+neighbor 0.3 bin
+{exclude}
+velocity all create 0.1 4711
+fix move all gear/quat molecule {words}
+timestep 0.001
+run 5
+run 5
+"""
+EXCLUDED = "neigh_modify exclude molecule/intra all", "neigh_modify exclude group all all", "neigh_modify exclude type 1 1"
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("exclude", EXCLUDED)
+def test_excluded_images(lmp, exclude, ranks):
+    """A rod meets its own images: one warning if they are excluded, and none with each of the remedies."""
+    told = "is so long that it meets its own periodic images"
+    deck = ROD.format(edge=5, exclude=exclude, words="")
+    assert lmp.succeed(deck, ranks=ranks).words.count(told) == 1
+    for remedy in (
+        {"edge": 5, "exclude": "", "words": ""},
+        {"edge": 9, "exclude": exclude, "words": ""},
+        {"edge": 5, "exclude": exclude, "words": "torque * off off off"},
+    ):
+        assert told not in lmp.succeed(ROD.format(**remedy), ranks=ranks).words
