@@ -51,11 +51,12 @@ void Assembly::find_axes(int part, const Momenta &momenta)
     const double given_tensor[9] = {i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]};
     std::copy_n(given_tensor, 9, tensor);
   }
+  // in two dimensions bodies turn about the z axis, which does not change at all
+  if (domain->dimension == 2) tensor[2] = tensor[5] = tensor[6] = tensor[7] = 0.0;
   double *moments = one.body.rigid.inertia;
   principal_axes(tensor, moments, one.axes);
   check_moments(one);
   drop_vanishing_moments(moments);
-  // in two dimensions the z axis does not change at all
   if (domain->dimension == 3) sort_axes(moments, one.axes);
 }
 
@@ -73,6 +74,8 @@ void Assembly::find_rotation(int part, const Momenta &momenta)
   to_body(one.axes, momentum_space, momentum_body);
   for (int k = 0; k < 3; ++k)
     one.state.omega_body[k] = moments[k] > 0.0 ? momentum_body[k] / moments[k] : 0.0;
+  if (domain->dimension == 2)
+    one.state.velocity[2] = one.state.omega_body[0] = one.state.omega_body[1] = 0.0;
   for (int k = 0; k < 3; ++k)
     if (!std::isfinite(one.state.omega_body[k]) || !std::isfinite(one.state.velocity[k]))
       faulty[NOT_FINITE] = one.body.id;
@@ -300,7 +303,8 @@ void Assembly::warn_of_clumps() const
   for (int part = 0; part < parts.number(); ++part)
     for (int k = 0; k < 3; ++k) {
       const auto bound = bounds(part, k);
-      if (!domain->periodicity[k] || !(bound[1] - bound[0] > HALF)) continue;
+      if (k >= domain->dimension || !domain->periodicity[k] || !(bound[1] - bound[0] > HALF))
+        continue;
       for (const int i : parts.atoms(part)) wide[i] = parts.key(part);
     }
   const int here = std::any_of(wide.begin(), wide.end(), [](tagint id) {

@@ -229,7 +229,6 @@ void Barostat::sum_momenta(const Tensor &sums)
     std::copy_n(all.begin() + ExactSum::LIMBS * k, ExactSum::LIMBS, sum.limbs);
     kinetic[k] = sum.value(unit) - total.twice_energy(Upper::ROW[k], Upper::COLUMN[k]);
   }
-  if (domain->dimension == 2) kinetic[2] = kinetic[3] = kinetic[4] = 0.0;
 }
 
 void Barostat::sum_present_momenta()

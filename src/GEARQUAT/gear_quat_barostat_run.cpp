@@ -127,7 +127,7 @@ void Barostat::begin_run(bool begins, double h)
   correction = Upper();    // forces are evaluated in the corrected box
   std::copy_n(domain->prd, 3, begun_box.m.begin());
   find_longest_body();
-  for (int k = 0; k < domain->dimension; ++k) refuse_narrow_box(k, domain->prd[k]);
+  for (int k = 0; k < 3; ++k) refuse_narrow_box(k, domain->prd[k]);
   begun_matrix = matrix;
   frequency.begin_run();
   strongest = Upper();
@@ -392,7 +392,7 @@ void Barostat::find_longest_body()
 /// In such a box a body overlaps with its own images, and atoms are lost.
 void Barostat::refuse_narrow_box(int direction, double edge) const
 {
-  if (edge > longest_body) return;
+  if (!asked.on[direction] || edge > longest_body) return;
   error->all(
       FLERR,
       "Fix gear/quat: in step {} the edge of the box along {}, {:.4g}, would be shorter than "

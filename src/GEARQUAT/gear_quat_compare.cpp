@@ -221,11 +221,12 @@ bool Comparer::same_masses(const AtomsOfBody &body) const
   const double rounding =
       ROUNDING * (domain->xprd + domain->yprd + domain->zprd + length(body.found));
   const double limit = body.body_mass * (SAME_MOMENTS * size + rounding);
+  const int pairs = domain->dimension == 2 ? 1 : 3;    // of axes: without z
   for (int k = 0; k < 3; ++k) {
     const double vanishing = moments[k] > 0.0 ? 0.0 : 2.0 * LINEAR_FRACTION * trace;
     if (std::fabs(body.first[k]) > limit) return false;
     if (std::fabs(second[k] - moments[k]) > limit * size + vanishing) return false;
-    if (std::fabs(second[3 + k]) > limit * size) return false;
+    if (k < pairs && std::fabs(second[3 + k]) > limit * size) return false;
   }
   return true;
 }

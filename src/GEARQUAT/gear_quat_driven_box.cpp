@@ -31,12 +31,16 @@ using namespace GearQuat;
    before a run
 ------------------------------------------------------------------------- */
 
+static bool changes_box(const Fix *one)
+{
+  return one->box_change & (Fix::BOX_CHANGE_SIZE | Fix::BOX_CHANGE_SHAPE);
+}
+
 void DrivenBox::init()
 {
   driven = false;
   for (const auto *other : modify->get_fix_list()) {
-    if (other == fix || !(other->box_change & (Fix::BOX_CHANGE_SIZE | Fix::BOX_CHANGE_SHAPE)))
-      continue;
+    if (other == fix || !changes_box(other)) continue;
     driven = true;
     if (!known(FixFact::CARRIES_BODIES, other))
       error->all(FLERR,
@@ -76,7 +80,7 @@ Fix *DrivenBox::smooth_driver() const
 {
   Fix *driver = nullptr;
   for (auto *other : modify->get_fix_list()) {
-    if (!(other->box_change & (Fix::BOX_CHANGE_SIZE | Fix::BOX_CHANGE_SHAPE))) continue;
+    if (!changes_box(other)) continue;
     if (driver || !utils::strmatch(other->style, "^deform$")) return nullptr;
     driver = other;
   }
@@ -125,11 +129,33 @@ void DrivenBox::end_remap()
     cell->note_remap();
     return;
   }
-  if (cell)
+  if (cell) {
     cell->remap(ownership.box(), step.started);
-  else
+  } else {
+    refuse_jump();
     remap_centers();
+  }
   place_sites();
+}
+
+/// A barostat with too short a damping time even turns the box inside out.
+void DrivenBox::refuse_jump() const
+{
+  constexpr double JUMP = 0.05, SMALL = 0.01;    // of an edge in a step
+  for (int k = 0; k < 3; ++k) {
+    const double ratio = domain->h[k] / ownership.box()[k];
+    if (std::fabs(ratio - 1.0) < JUMP) continue;
+    double larger = std::fabs(1.0 - ratio * ratio * ratio) / (3.0 * SMALL);
+    if (!std::isfinite(larger)) larger = 1.0 / SMALL;    // the cube root of a negative number
+    for (const auto *other : modify->get_fix_list())
+      if (other != fix && changes_box(other) && !utils::strmatch(other->style, "^deform"))
+        error->all(FLERR,
+                   "Fix gear/quat: fix {} ({}) has changed the length of the box along {} by a "
+                   "factor of {:.3g} in step {}; make its Pdamp, or the modulus of fix "
+                   "press/berendsen, {:.2g} times larger",
+                   other->id, other->style, "xyz"[k], ratio, update -> ntimestep,
+                   rounded_up(larger));
+  }
 }
 
 void DrivenBox::remap_centers()

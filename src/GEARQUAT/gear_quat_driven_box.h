@@ -83,6 +83,7 @@ class DrivenBox : protected Pointers {
   void drive(Fix *deform);
 
   void pass_faces(int ibody, const double *images);
+  void refuse_jump() const;
   void remap_centers();
   void move_center(int ibody, const double *way);
   void place_sites();

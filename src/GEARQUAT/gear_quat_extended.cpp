@@ -291,9 +291,8 @@ void Extended::place(const std::vector<BodyState> &states, bool orientations, bo
 void Extended::add_torques(double **torque, std::vector<Load> &loads) const
 {
   if (!torque) return;
-  const int first = domain->dimension == 2 ? 2 : 0;
   for (const Site &site : sites)
-    for (int k = first; k < 3; ++k) loads[site.body].torque_space[k] += torque[site.atom][k];
+    for (int k = 0; k < 3; ++k) loads[site.body].torque_space[k] += torque[site.atom][k];
 }
 
 /// True if two vectors are equal up to rounding, relative to their length.

@@ -12,6 +12,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
@@ -231,7 +232,8 @@ std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
   for (const Site &site : sites) {
     const Sites::Expected v = sites.expected_velocity(site);
     double off[3];
-    for (int k = 0; k < 3; ++k) off[k] = atom->v[site.atom][k] - v.value[k];
+    for (int k = 0; k < 3; ++k)
+      off[k] = k < domain->dimension ? atom->v[site.atom][k] - v.value[k] : 0.0;
     if (!(length(off) <= RIGID * v.size)) torn = std::max(torn, bodies.body_at(site.body).id);
   }
   torn = over_ranks(MPI_MAX, torn, world);

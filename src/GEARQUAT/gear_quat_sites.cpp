@@ -338,6 +338,8 @@ template <class Force> void Sites::gather(Force force_on, double **torque)
       });
   if (!extended.sites.empty()) extended.add_torques(torque, loads);
   if (bodies.have_copies()) ownership.sum(loads);
+  for (int ibody = 0; ibody < bodies.nmoved() && domain->dimension == 2; ++ibody)
+    loads[ibody].force[2] = loads[ibody].torque_space[0] = loads[ibody].torque_space[1] = 0.0;
 
   const double ftm2v = force->ftm2v;
   if (ftm2v == 1.0) return;

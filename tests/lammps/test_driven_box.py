@@ -3,6 +3,8 @@
 Unsupported settings are in test_bad_input.py; change_box between runs is in test_remapped_box.py.
 """
 
+import re
+
 import numpy as np
 import pytest
 from pressed import MASSES, REPULSIVE, distances, ends, pressed, trimers
@@ -379,3 +381,37 @@ def test_a_restart_in_the_middle_of_a_deformation_goes_on(lmp_wheel):
         assert "histories of the restart file go on" in result.stdout and "anew" not in result.stdout
         for frame in frames[1:]:
             assert np.abs(frame - frames[0])[:, 3:6].max() < 1e-12
+
+
+# --- jumps --------------------------------------------------------------------------------------
+
+LIQUID = """
+units real
+atom_style full
+atom_modify map yes
+region b block 0 15 0 15 0 15
+create_box 1 b
+mass 1 39.9
+lattice sc 3.75
+molecule d dimer.mol
+create_atoms 0 box mol d 4711
+pair_style lj/cut 7.0
+pair_coeff * * 0.24 3.0
+velocity all create 300 887
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+fix f all gear/quat molecule temp 300 300 100
+run 300
+fix p all press/berendsen iso 1000 1000 100 modulus {}
+run 100
+"""
+
+
+@pytest.mark.parametrize("ranks, modulus", [(1, 10), (2, 10), (1, 100), (2, 100)])
+def test_a_box_that_jumps_is_named_with_a_remedy(lmp_tree, ranks, modulus):
+    dimer = "dimer\n\n2 atoms\n\nCoords\n\n1 -0.5 0 0\n2 0.5 0 0\n\nTypes\n\n1 1\n2 1\n"
+    (lmp_tree.folder / "dimer.mol").write_text(dimer)
+    message = "fix p (press/berendsen) has changed the length of the box along x by a factor of"
+    result = lmp_tree.refuse(LIQUID.format(modulus), message, ranks=ranks)
+    factor = float(re.search(r"press/berendsen, ([\d.e+]+) times larger", result.errors[0]).group(1))
+    mended = lmp_tree.succeed(LIQUID.format(factor * modulus), ranks=ranks)
+    assert "WARNING: Fix gear/quat" not in mended.words
