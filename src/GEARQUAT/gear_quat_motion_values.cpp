@@ -69,13 +69,15 @@ Scheme Motion::choose_scheme(const MotionSums &here)
   return choice.scheme;
 }
 
+/// Collective.
 void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const
 {
   using Reason = ChoiceOfValues::Reason;
+  const NoisyForces forces = noise_of_forces(lmp, ownership);    // on all ranks
   if (comm->me != 0) return;
   std::string why;
   if (choice.reason == Reason::NOISE)
-    why = "because " + noise_of_forces(lmp, ownership).words();
+    why = "because " + forces.words();
   else if (choice.reason == Reason::FRICTION)
     why = "because the thermostat has a strong friction";
   else if (choice.reason == Reason::FORMULATION)

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from scenes import FORMULATIONS, last_frame, placed, restarted, water
+from scenes import FORMULATIONS, last_frame, one_after_the_other, placed, restarted, water
 
 CHOSEN = re.compile(r"Fix gear/quat move: (\d+) values( and corrector gear)?, (.*)")
 SHORT, LONG = 0.5, 2.5  # fs, on either side of the limit in these boxes of water
@@ -145,6 +145,50 @@ def test_the_style_decides(lmp_wheel, style, gear, forces):
     text = placed(bodies, np.full((4, 3), 0.1), [1] * 4, fix="gear/quat molecule", **settings)
     result = lmp_wheel.succeed("comm_modify vel yes\n" + text)
     assert chosen(result) == [(4, gear, f"because forces of {forces}")]
+
+
+EDPD = """
+units lj
+atom_style hybrid edpd molecular
+atom_modify map array
+region box block 0 6 0 6 0 6
+create_box 1 box
+lattice sc 3.0
+create_atoms 1 box
+mass 1 1.0
+set group all edpd/temp 1.0
+set group all edpd/cv 1e5
+region middle block 2.0 3.9 2.0 3.9 2.0 3.9 units box
+group body region middle
+group fluid subtract all body
+set group fluid mol 0
+set group body mol 1
+pair_style edpd 1.58 4711
+pair_coeff 1 1 18.75 4.5 0.41 1.58 1.42e-5 2.0 1.58
+comm_modify vel yes
+neighbor 0.3 bin
+neigh_modify every 1 delay 0 check yes exclude group body body
+velocity all create 1.0 5 loop geom
+velocity body set 300.0 0 0
+fix others fluid mvv/edpd
+fix move body {fix}
+timestep {dt}
+variable speed equal vcm(body,x)
+thermo_style custom step v_speed
+thermo {every}
+run $(4*v_every)
+"""
+
+
+def test_friction_of_a_strongly_damping_fluid(lmp_wheel):
+    """The fluid takes a third of a momentum in a step; the judge is fix rigid with a quarter of the step."""
+    decks = [
+        f"variable every equal {every}\n" + EDPD.format(fix=fix, dt=0.02 / every, every=every)
+        for fix, every in (("gear/quat single", 2), ("rigid single", 8))
+    ]
+    result = lmp_wheel.succeed(one_after_the_other(decks))
+    ours, exact = (np.array(table["v_speed"]) for table in result.thermo)
+    assert ours[:4] == pytest.approx(exact[:4], rel=0.08) and exact[3] < 0.3 * exact[0]
 
 
 def test_a_stated_number_that_heats_is_warned_of(lmp_tree, data):
