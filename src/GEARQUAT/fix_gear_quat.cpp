@@ -32,11 +32,13 @@
 #include "error.h"
 #include "force.h"
 #include "group.h"
+#include "input.h"
 #include "modify.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -103,6 +105,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   if (bodies->number() == 0 && args->mol.empty())
     error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
   motion->meet_bodies();
+  atoms_are_free = over_ranks(MPI_MAX, (int) ownership->had_free_atoms(), world);
   count_rows();
   size_array_rows_variable = !args->mol.empty();    // rows may be requested before they exist
 
@@ -245,6 +248,7 @@ void FixGearQuat::setup(int vflag)
   if (!reported) warn_of_excluded_images(lmp, this, *bodies, *ownership, *sites);
   if (!reported) report_scene(lmp, this, *args, *fleet, *bodies, *ownership, *sites);
   reported = true;
+  atoms_are_free = false;
 }
 
 void FixGearQuat::count_rows()
@@ -331,7 +335,6 @@ void FixGearQuat::post_run()
     end_minimization();
     return;
   }
-  meet_forces();
   motion->end_run();
   driven_box->end_run();
 }
@@ -448,19 +451,8 @@ void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
    outputs
 ------------------------------------------------------------------------- */
 
-/// In output before the first step, when all fixes have been set up.
-void FixGearQuat::meet_forces()
-{
-  if (!motion->awaits_forces() || update->whichflag != 1) return;    // in a run
-  const bool levels = !RespaForces::steps(lmp).empty();
-  if (levels) respa->sum_present();
-  step->gather(levels ? respa->forces() : atom->f, levels ? respa->torques() : atom->torque);
-  motion->meet_forces();
-}
-
 double FixGearQuat::compute_scalar()
 {
-  meet_forces();
   return sums->energy_correction() + motion->energy();
 }
 
@@ -471,7 +463,6 @@ double FixGearQuat::compute_vector(int n)
                "Fix gear/quat {}: output reads element {} of a vector of {}; the fix has other "
                "keywords than when the output was defined: define it anew",
                id, n + 1, size_vector);
-  meet_forces();
   if (n >= Sums::ELEMENTS) return motion->element(n - Sums::ELEMENTS);
   return sums->element(n, step->started ? step->present_integrator() : nullptr);
 }
@@ -481,8 +472,13 @@ double FixGearQuat::compute_array(int i, int j)
   return table->global(i, j);
 }
 
+/// The command velocity create gives every atom its own velocity, of which bodies adopt the rigid
+/// part: until then, all degrees of freedom of atoms count.
 bigint FixGearQuat::dof(int tgroup)
 {
+  const bool in_run = update->whichflag != 0;
+  if (!in_run && input->narg > 1 && strcmp(input->arg[1], "create") == 0) atoms_are_free = true;
+  if (!in_run && atoms_are_free) return 0;
   const Comparison found = ownership->count_atoms(group->bitmask[tgroup]);
   if (found.divided && !(told_of_groups & group->bitmask[tgroup])) {
     told_of_groups |= group->bitmask[tgroup];
@@ -499,7 +495,17 @@ bigint FixGearQuat::dof(int tgroup)
 
 int FixGearQuat::modify_param(int narg, char **arg)
 {
-  return modify_like_rigid(lmp, narg, arg);
+  if (strcmp(arg[0], "extra/dof") != 0) return modify_like_rigid(lmp, narg, arg);
+  if (narg < 2) utils::missing_cmd_args(FLERR, "fix_modify extra/dof", error);
+  args->thermostat.subtracted = utils::inumeric(FLERR, arg[1], false, lmp);
+  if (args->thermostat.subtracted < 0 || !ecouple_flag)
+    error->all(
+        FLERR,
+        "Fix gear/quat: fix_modify extra/dof is the number of degrees of freedom, 0 or more, "
+        "that temp or a pressure does not count; keywords of neither are in the command, or "
+        "the number is negative");
+  step->coupling->subtract(args->thermostat.subtracted);
+  return 2;
 }
 
 double FixGearQuat::memory_usage()

@@ -123,19 +123,19 @@ class FixGearQuat : public Fix {
 
   std::vector<GearQuat::StatedMolecule> stated;    // one for each molecule of the template
 
-  bool met_atoms = false;        // an earlier run has compared bodies and atoms
-  bool told_of_ids = false;      ///< a warning about changed molecule IDs was given
-  int told_of_groups = 0;        ///< their bits: a warning about parts of bodies was given
-  bool reported = false;         // the report was printed
-  bool min_projected = false;    // forces were projected before a minimization begins
-  int min_vflag = 0;             // vflag of the current evaluation in a minimization
-  bool motion_acts = true;       // the next step begins with actions of Motion
+  bool met_atoms = false;         // an earlier run has compared bodies and atoms
+  bool told_of_ids = false;       ///< a warning about changed molecule IDs was given
+  int told_of_groups = 0;         ///< their bits: a warning about parts of bodies was given
+  bool reported = false;          // the report was printed
+  bool atoms_are_free = false;    // their velocities are not yet those of bodies
+  bool min_projected = false;     // forces were projected before a minimization begins
+  int min_vflag = 0;              // vflag of the current evaluation in a minimization
+  bool motion_acts = true;        // the next step begins with actions of Motion
 
   void create_bodies();
   void update_bodies();
   void resume();
   void meet_fleet();
-  void meet_forces();
   void begin_step(int, double **, double **);
   void end_step(double **, double **);
   void end_minimization();

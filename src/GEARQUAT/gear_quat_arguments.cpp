@@ -29,6 +29,7 @@ static constexpr int FIRST_WORD = 3;    // fix ID group gear/quat ...
 Arguments::Arguments(LAMMPS *lmp, int narg, char **arg) : Pointers(lmp)
 {
   const int used = parse_bodystyle(narg, arg);
+  find_formulas(arg[1]);
   parse_keywords(narg - used, arg + used);
 }
 
@@ -376,6 +377,23 @@ std::vector<tagint> Arguments::body_ids(int groupbit) const
   std::vector<tagint> ids(atom->nlocal);
   for (size_t i = 0; i < ids.size(); ++i) ids[i] = (atom->mask[i] & groupbit) ? 1 : 0;
   return ids;
+}
+
+/// Formulas of LAMMPS' variables for the bodies of this command.
+void Arguments::find_formulas(const std::string &group_of_fix)
+{
+  pressure.in_bodies = fmt::format("gmask({})", group_of_fix);
+  pressure.bodies = bodystyle == BodyStyle::MOLECULE ? "mol"
+      : bodystyle == BodyStyle::CUSTOM               ? custom
+                                                     : "1";
+  if (bodystyle != BodyStyle::GROUP) return;
+  std::vector<std::string> in, number;
+  for (const auto &one : groups) {
+    in.push_back(fmt::format("gmask({})", one));
+    number.push_back(fmt::format("{}*gmask({})", in.size(), one));
+  }
+  pressure.in_bodies = utils::join_words(in, "+");
+  pressure.bodies = utils::join_words(number, "+");
 }
 
 std::vector<tagint> Arguments::molecule_ids(int groupbit) const

@@ -37,6 +37,7 @@ struct ThermostatWords {
   double start = 0.0, stop = 0.0, damp = 0.0;    ///< damp 0: none
   int length = 0;
   bool separate = false;
+  int subtracted = -1;      ///< by fix_modify extra/dof; negative: as the scene is
   bool may_wait = false;    ///< bodies may be inserted later, so a run may start without any
 };
 
@@ -50,6 +51,8 @@ struct PressureWords {
   double temperature = 0.0;
   std::vector<double> fixed;    ///< point; empty: the center of the box
   bool flip = true;
+  std::string bodies,
+      in_bodies;    ///< formulas of an atom: number of its body, 1 for an atom in one
 
   bool any() const { return std::count(on, on + COMPONENTS, true) > 0; }
   bool shears() const { return on[3] || on[4] || on[5]; }
@@ -273,6 +276,7 @@ struct Arguments : protected Pointers {
   std::map<std::string, KeywordValue> given;    ///< of the command, its bodystyle among them
 
   int parse_bodystyle(int narg, char **arg);
+  void find_formulas(const std::string &group_of_fix);
   void parse_keywords(int narg, char **arg);
   void take_preset();
   bool is_on(const std::string &keyword, const std::string &value) const;

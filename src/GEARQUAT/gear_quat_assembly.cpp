@@ -55,6 +55,7 @@ void Assembly::Sizes::merge(const Sizes &other)
   speed = std::max(speed, other.speed);
   own_inertia = std::max(own_inertia, other.own_inertia);
   own_momentum = std::max(own_momentum, other.own_momentum);
+  types += other.types;
   finite = finite && other.finite;
 }
 
@@ -190,9 +191,18 @@ Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extend
   warn_of_clumps();
 }
 
+/// Different sums for different numbers of atoms of each type (splitmix64).
+static uint64_t mixed(uint64_t type)
+{
+  uint64_t z = type * 0x9e3779b97f4a7c15ull;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return z ^ (z >> 31);
+}
+
 void Assembly::find_sizes()
 {
-  const Sizes none = {0, MAXTAGINT, {}, 0.0, 0.0, 0.0, 0.0, 1};
+  const Sizes none = {0, MAXTAGINT, {}, 0.0, 0.0, 0.0, 0.0, 1, 0};
   sizes = over_sites(none, [this](Sizes &all, int part) {
     Body &body = made[part].body;
     body.id = parts.key(part);
@@ -203,6 +213,7 @@ void Assembly::find_sizes()
       domain->unmap(atom->x[i], atom->image[i], x);
       if (extended) extended->own_momenta(i, mass, inertia, momentum);
       ++all.natoms;
+      all.types += mixed(atom->type[i]);
       if (atom->tag[i] < all.first) {
         all.first = atom->tag[i];
         std::copy_n(x, 3, all.first_x);

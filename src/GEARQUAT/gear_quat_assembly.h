@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <vector>
 
@@ -60,6 +61,8 @@ class Assembly : protected Pointers {
     Body body;
     BodyState state;
     double axes[9];    ///< principal, rotation matrix space -> body
+    /// True if the velocity of a site with this place is not that of the body.
+    bool moves_apart(const double *v, const double *arm_body) const;
   };
 
   /// Creates the bodies.  ids: of every owned atom, 0 for none.  extended: null if all atoms are
@@ -83,6 +86,8 @@ class Assembly : protected Pointers {
         act(made[part], i, arm_body);
       }
   }
+  /// Warns of bodies of the same atom types with different shapes.  True if there are any.
+  bool warn_of_shapes() const;
   double memory_usage() const;
 
  private:
@@ -116,6 +121,7 @@ class Assembly : protected Pointers {
     double first_x[3];    ///< of this atom, unwrapped: where image flags are relative to
     double mass, speed, own_inertia, own_momentum;    ///< largest component of a site
     int finite;
+    uint64_t types;    ///< the same for the same atom types
     void merge(const Sizes &other);
   };
   struct Extremes {

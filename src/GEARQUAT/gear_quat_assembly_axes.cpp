@@ -343,3 +343,83 @@ void Assembly::warn_of_clumps() const
                    "atoms in the data file, or use set image before this fix",
                    in_clumps);
 }
+
+/* ----------------------------------------------------------------------
+   bodies of the same kind
+------------------------------------------------------------------------- */
+
+bool Assembly::Made::moves_apart(const double *v, const double *arm_body) const
+{
+  constexpr double APART = 1.0e-3;    // velocities of a data file have few digits
+  double turning_body[3], turning[3], off[3];
+  cross3(state.omega_body, arm_body, turning_body);
+  to_space(axes, turning_body, turning);
+  for (int k = 0; k < 3; ++k) off[k] = v[k] - state.velocity[k] - turning[k];
+  return dot3(off, off) > APART * APART * dot3(v, v);
+}
+
+namespace {
+
+/// Radii of gyration about the principal axes of bodies of one kind.
+struct Radii {
+  double least[3], most[3];
+  tagint with_least[3], with_most[3];    ///< IDs of bodies
+  void merge(const Radii &other)
+  {
+    for (int k = 0; k < 3; ++k) {
+      if (other.least[k] < least[k]) least[k] = other.least[k], with_least[k] = other.with_least[k];
+      if (other.most[k] > most[k]) most[k] = other.most[k], with_most[k] = other.with_most[k];
+    }
+  }
+};
+
+}    // namespace
+
+/// Molecules that were flexible until the fix was defined keep the shapes that they had then.
+/// Atoms of finite size have different radii and masses with the same type.
+bool Assembly::warn_of_shapes() const
+{
+  constexpr double OTHER = 0.005;    // of the size; coordinates with three decimals differ less
+  if (extended || atom->rmass) return false;
+  std::vector<tagint> kinds(made.size(), 0);
+  for (size_t part = 0; part < made.size(); ++part)
+    if (made[part].owner_rank == comm->me && !made[part].body.from_file)
+      kinds[part] = 1 + (tagint) (sizes[part].types % (MAXTAGINT - 1));
+  const Parts families(comm, world, kinds.data(), (int) kinds.size());
+  std::vector<Radii> radii;
+  for (int family = 0; family < families.number(); ++family) {
+    Radii all = {{NONE, NONE, NONE}, {}, {}, {}};
+    for (const int part : families.atoms(family)) {
+      const RigidBody &rigid = made[part].body.rigid;
+      Radii one;
+      for (int k = 0; k < 3; ++k) {
+        one.least[k] = one.most[k] = std::sqrt(std::max(0.0, rigid.inertia[k] / rigid.mass));
+        one.with_least[k] = one.with_most[k] = made[part].body.id;
+      }
+      all.merge(one);
+    }
+    radii.push_back(all);
+  }
+  families.merge(radii);
+  double largest = OTHER;
+  tagint bodies[2] = {0, 0};
+  for (const Radii &one : radii)
+    for (int k = domain->dimension == 2 ? 2 : 0; k < 3; ++k) {
+      const double size = std::max({one.most[0], one.most[1], one.most[2]});
+      if (!(one.most[k] - one.least[k] > largest * size)) continue;
+      largest = (one.most[k] - one.least[k]) / size;
+      bodies[0] = one.with_least[k];
+      bodies[1] = one.with_most[k];
+    }
+  const double all = over_ranks(MPI_MAX, largest, world);
+  if (largest < all) bodies[0] = bodies[1] = 0;
+  const auto named = over_ranks(MPI_MAX, bodies, world);
+  if (named[0] && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: bodies {} and {} have atoms of the same types, and their "
+                   "shapes differ by {:.2g} % of their size; bodies keep the shapes they have "
+                   "when the fix is defined: if they are equal molecules, define the fix before "
+                   "minimize, or run one step with fix shake before the fix",
+                   named[0], named[1], 100.0 * all);
+  return named[0] != 0;
+}

@@ -120,7 +120,7 @@ class Barostat : public Thermostat {
   double kt = 0.0;                                 ///< of the mass of the box in that step
   Upper made_target, made_rate;                    ///< of the last step before this run
   std::array<double, Upper::SIZE> periods = {};    ///< damping times in the last step
-  std::array<double, 2> told_of_box = {};          ///< last logged freedoms and total momentum
+  std::string told_of_box;                         ///< last message of the degrees of freedom
 
   Upper matrix, rate;    ///< M and G in the present pass, or at a node
   struct Moving {        ///< variables that a step changes
@@ -166,7 +166,8 @@ class Barostat : public Thermostat {
   void find_target(bigint step, double h);
   void move_target(double time);
   void refuse_scene() const;
-  void tell_freedoms(const std::string &why) override;
+  void refuse_others() const;
+  void tell_freedoms_of_box();
   void find_temperature();
   Upper masses() const;
   double period() const;

@@ -33,18 +33,31 @@ using namespace GearQuat;
    before a run
 ------------------------------------------------------------------------- */
 
+/// Refuses atoms outside of bodies.
+void Barostat::refuse_others() const
+{
+  bigint here = 0;
+  tagint last = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    here += bodies.body_at(ibody).natoms;
+    last = std::max(last, bodies.body_at(ibody).id);
+  }
+  const bigint others = atom->natoms - over_ranks(MPI_SUM, here, world);
+  if (others == 0) return;
+  const double number = std::pow(10.0, std::ceil(std::log10(over_ranks(MPI_MAX, last, world) + 1)));
+  error->all(FLERR,
+             "Fix gear/quat: constant pressure requires all atoms to be in bodies of this fix, and "
+             "{3} are not: their places would not follow the box; make each of them a body of its "
+             "own with \"variable b atom '({0})*({1})+(1-({0}))*({2:.0f}+id)'\" and with \"custom "
+             "v_b\" for a group of all atoms, and let no other fix move them",
+             asked.in_bodies, asked.bodies, number, others);
+}
+
 /// Refuses forces without a virial, and positions that do not follow the box.
 void Barostat::refuse_scene() const
 {
   virial.check_compute();
-  bigint here = 0;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here += bodies.body_at(ibody).natoms;
-  const bigint others = atom->natoms - over_ranks(MPI_SUM, here, world);
-  if (others > 0)
-    error->all(FLERR,
-               "Fix gear/quat: constant pressure requires all atoms to be in bodies of this fix, "
-               "and {} are not: their places would not follow the box",
-               others);
+  refuse_others();
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR,
                "Fix gear/quat: constant pressure cannot be used with run_style respa; use "
@@ -55,16 +68,12 @@ void Barostat::refuse_scene() const
     error->all(FLERR,
                "Fix gear/quat: shear components of the pressure require atoms that are "
                "points: torques on atoms make the virial of LAMMPS unsymmetric");
-  constexpr int ON_FORCES = FixConst::POST_FORCE | FixConst::PRE_REVERSE;
-  for (auto *other : modify->get_fix_list()) {
-    if (other == fix || !(modify->get_fix_mask(other) & ON_FORCES)) continue;
-    if (known(FixFact::THREADS, other) || known(FixFact::NO_FORCE, other)) continue;
+  if (const Fix *other = fix_with_forces(lmp, fix))
     error->all(
         FLERR,
         "Fix gear/quat: constant pressure cannot be used with fix {} ({}), which may change "
         "forces: what they add to the pressure is not known; leave it out, or keep the volume",
         other->id, other->style);
-  }
   if (asked.shears() && asked.flip && !box.can_flip() && comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: this build replaces no tilted box on several ranks (keyword "
@@ -93,24 +102,19 @@ void Barostat::find_temperature()
   words.start = words.stop = all[0] / all[1] * force->mvv2e / force->boltz;
 }
 
-void Barostat::tell_freedoms(const std::string &why)
+void Barostat::tell_freedoms_of_box()
 {
-  Thermostat::tell_freedoms(why);
-  const std::array<double, 2> now = {freedoms[TRANSLATION], total.record()};
-  if (told_of_box == now) return;
-  told_of_box = now;
-  if (comm->me != 0) return;
   std::vector<std::string> masses;
   for (int k = 0; k < Upper::SIZE; ++k) {
     if (!asked.on[k]) continue;
     const std::string mass = fmt::format("{:.4g}", mass_of(k) * force->mvv2e);
     if (!std::count(masses.begin(), masses.end(), mass)) masses.push_back(mass);
   }
-  utils::logmesg(lmp,
-                 "Fix gear/quat {}: barostat for {:.0f} degrees of freedom of translation{} and {} "
-                 "of the box, whose mass is {} at a temperature of {:.4g}\n",
-                 fix->id, freedoms[TRANSLATION], total.description(), free_components(),
-                 utils::join_words(masses, " and "), kt * force->mvv2e / force->boltz);
+  tell_once(told_of_box,
+            fmt::format("barostat for {:.0f} degrees of freedom of translation{} and {} of the "
+                        "box, whose mass is {} at a temperature of {:.4g}",
+                        freedoms[TRANSLATION], total.description(), free_components(),
+                        utils::join_words(masses, " and "), kt * force->mvv2e / force->boltz));
 }
 
 void Barostat::begin_run(bool begins, double h)
@@ -123,6 +127,7 @@ void Barostat::begin_run(bool begins, double h)
   made_target = target;
   made_rate = target_rate;
   if (update->nsteps > 0 || begins) find_target(update->ntimestep, h);
+  tell_freedoms_of_box();
   if (begins) refer_to_box(h);
   correction = Upper();    // forces are evaluated in the corrected box
   std::copy_n(domain->prd, 3, begun_box.m.begin());

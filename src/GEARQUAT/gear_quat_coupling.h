@@ -57,14 +57,9 @@ class Coupling : protected Pointers {
   virtual void set_scheme(const Scheme & /*scheme*/) {}
   /// After begin_run(): the strongest friction expected in the run, times the step.  Local.
   virtual double friction_ahead(double /*h*/) const { return 0.0; }
-  /// True if degrees of freedom depend on the forces of all fixes.  Local.
-  virtual bool awaits_forces() const { return false; }
-  /// Called when the loads include the forces of all fixes.
-  virtual void meet_forces() {}
-  /// The first step begins, after meet_forces().  begins: with new histories.
-  virtual void begin_steps(bool /*begins*/) {}
-  virtual void end_run() {}
-  /// A reason for a new start of histories, null for none; after meet_forces().
+  /// fix_modify extra/dof: degrees of freedom of translation that do not count.  Local.
+  virtual void subtract(int /*freedoms*/) {}
+  /// A reason for a new start of histories, null for none.
   virtual const char *reason_to_start_anew() const { return nullptr; }
   /// False if the variables of the coupling would be lost in a start.  Local.
   virtual bool may_start_anew() const { return true; }

@@ -68,6 +68,8 @@ static constexpr StyleFact<PairFact> PAIRS[] = {
     {PairFact::DISSIPATIVE, "^smd", "viscosity"},
     {PairFact::DISSIPATIVE, "^mesocnt/viscous", "friction between tubes"},
     {PairFact::READS_VARIABLES, "^hybrid/scaled", "factors of its styles are numbers or variables"},
+    {PairFact::BACKGROUND, "^brownian", "friction and random forces of a fluid at rest"},
+    {PairFact::BACKGROUND, "^lubricate", "friction with a fluid, and a flow if there is one"},
 };
 
 // whole names, as compared by Force::bond_match()
@@ -301,6 +303,16 @@ const char *GearQuat::known(FixFact what, const Fix *fix)
   return reason_in(FIXES, what, [fix](const char *pattern) {
     return utils::strmatch(fix->style, pattern);
   });
+}
+
+const Fix *GearQuat::fix_with_forces(LAMMPS *lmp, const Fix *owner)
+{
+  constexpr int ON_FORCES = FixConst::POST_FORCE | FixConst::PRE_REVERSE;
+  for (auto *other : lmp->modify->get_fix_list())
+    if (other != owner && (lmp->modify->get_fix_mask(other) & ON_FORCES) &&
+        !known(FixFact::THREADS, other) && !known(FixFact::NO_FORCE, other))
+      return other;
+  return nullptr;
 }
 
 const char *GearQuat::known(ComputeFact what, const Compute *compute)

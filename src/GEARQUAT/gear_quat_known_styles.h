@@ -32,6 +32,7 @@ enum class PairFact {
   UNREPEATABLE,       ///< its forces differ, or may differ, when they are evaluated again
   DISSIPATIVE,        ///< its forces damp motion, and may be random or set in where atoms touch
   READS_VARIABLES,    ///< it may evaluate variables of the script
+  BACKGROUND,         ///< forces between atoms and a fluid at rest: they change the total momentum
 };
 
 /// Properties of a fix.
@@ -62,6 +63,8 @@ enum class ComputeFact {
 const char *known(PairFact what, const Force *force);
 const char *known(FixFact what, const Fix *fix);
 const char *known(ComputeFact what, const Compute *compute);
+/// The first other fix that may exert forces on atoms, null for none.
+const Fix *fix_with_forces(LAMMPS *lmp, const Fix *owner);
 /// One line for each style: whether its forces can be evaluated again, and the source of this
 /// information.
 std::vector<std::string> sources_of_repeatability(LAMMPS *lmp);

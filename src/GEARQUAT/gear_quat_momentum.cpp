@@ -5,12 +5,13 @@
 
 #include "gear_quat_momentum.h"
 
+#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
 #include "domain.h"
+#include "fix.h"
 #include "force.h"
-#include "kspace.h"
 #include "utils.h"
 
 #include <algorithm>
@@ -20,34 +21,30 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// a sum of forces counts as zero if in a damping time it changes the total momentum by less than
-// this part of its thermal value, or if it is less than this part of all forces: the individual
-// pair forces may be larger, and of single precision
-
-static constexpr double PART_OF_THERMAL = 1.0e-10, PART_OF_FORCES = 1.0e-8;
-
-// or if it is less than this multiple of the sum of independent errors of all atoms: a mesh whose
-// forces are derivatives of interpolated energies leaves a third of it
-
-static constexpr double ERRORS_OF_MESH = 3.0;
-
 // exact sums represent terms up to 2^20 units: forces of overlaps, and fast common motion
 
 static constexpr double LARGE_FORCES = 1073741824.0, LARGE_MOMENTA = 1024.0;    // 2^30, 2^10
 
 /* ---------------------------------------------------------------------- */
 
-TotalMomentum::TotalMomentum(LAMMPS *lmp, const Bodies &bodies, double period) :
-    Pointers(lmp), bodies(bodies), period(period)
-{
-}
-
 bool TotalMomentum::belongs(int ibody, int direction) const
 {
   return direction < domain->dimension && !(bodies.body_at(ibody).off & force_off(direction));
 }
 
-void TotalMomentum::weigh()
+std::string TotalMomentum::find_outside() const
+{
+  bigint here = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here += bodies.body_at(ibody).natoms;
+  const bigint others = atom->natoms - over_ranks(MPI_SUM, here, world);
+  if (others > 0) return fmt::format("{} atoms are in no body of this fix", others);
+  if (const Fix *other = fix_with_forces(lmp, fix)) return name_of(other) + " may exert forces";
+  if (known(PairFact::BACKGROUND, lmp->force))
+    return std::string("pair style ") + lmp->force->pair_style + " exerts forces from outside";
+  return "";
+}
+
+void TotalMomentum::weigh(int stated_freedoms)
 {
   double heaviest = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
@@ -72,16 +69,25 @@ void TotalMomentum::weigh()
     mass[k] = masses[k].value(unit);
     count[k] = (double) all[COUNTS + k];
   }
-}
 
-/* ----------------------------------------------------------------------
-   sums
-------------------------------------------------------------------------- */
+  const int d = domain->dimension;
+  stated = stated_freedoms >= 0;
+  outside = find_outside();
+  subtracted = 0;
+  for (int k = 0; k < d; ++k) {
+    constant[k] = stated
+        ? stated_freedoms >= d
+        : domain->periodicity[k] && outside.empty() && count[k] == (double) bodies.number();
+    constant[k] = constant[k] && count[k] > 0.0;
+    subtracted += constant[k];
+  }
+  if (stated) subtracted = stated_freedoms;
+}
 
 void TotalMomentum::begin_sums(double kt)
 {
   for (auto &sum : differences) sum = ExactSum();
-  thermal = std::sqrt(kt * std::max({mass[0], mass[1], mass[2]}));
+  const double thermal = std::sqrt(kt * std::max({mass[0], mass[1], mass[2]}));
   unit_momentum = LARGE_MOMENTA * ExactSum::scale_of(thermal);
   unit_force = LARGE_FORCES * ExactSum::scale_of(thermal / period);
 }
@@ -89,39 +95,32 @@ void TotalMomentum::begin_sums(double kt)
 void TotalMomentum::add_predicted(int ibody, const double *of_rows)
 {
   for (int k = 0; k < 3; ++k)
-    if (counts(k) && belongs(ibody, k))
-      differences[k].add(bodies.load_of(ibody).force[k] - of_rows[k], unit_force);
+    if (constant[k]) differences[k].add(bodies.load_of(ibody).force[k] - of_rows[k], unit_force);
 }
 
-void TotalMomentum::add_up(bigint *limbs)
+void TotalMomentum::add_up(bigint *limbs) const
 {
   for (int k = 0; k < 3; ++k) {
-    ExactSum sums[2];
-    double here = 0.0;    // only for a test: its rounding may depend on the distribution of bodies
-    for (int ibody = 0; counts(k) && ibody < bodies.nowned(); ++ibody) {
-      const Body &body = bodies.body_at(ibody);
-      if (body.off & force_off(k)) continue;
-      sums[0].add(body.rigid.mass * bodies.state_of(ibody).velocity[k], unit_momentum);
-      here += bodies.load_of(ibody).force[k];
-    }
-    sums[1].add(here, unit_force);
-    for (const ExactSum &sum : {sums[0], sums[1], differences[k]})
-      limbs = std::copy_n(sum.limbs, ExactSum::LIMBS, limbs);
+    ExactSum sum;
+    for (int ibody = 0; constant[k] && ibody < bodies.nowned(); ++ibody)
+      if (belongs(ibody, k))
+        sum.add(bodies.rigid_of(ibody).mass * bodies.state_of(ibody).velocity[k], unit_momentum);
+    limbs = std::copy_n(sum.limbs, ExactSum::LIMBS, limbs);
+    limbs = std::copy_n(differences[k].limbs, ExactSum::LIMBS, limbs);
   }
 }
 
 void TotalMomentum::take(const bigint *limbs)
 {
   for (int k = 0; k < 3; ++k) {
-    ExactSum sums[3];
+    ExactSum sums[2];
     for (ExactSum &sum : sums) {
       std::copy_n(limbs, ExactSum::LIMBS, sum.limbs);
       limbs += ExactSum::LIMBS;
     }
     momentum[k] = sums[0].value(unit_momentum);
-    force[k] = sums[1].value(unit_force);
-    common[k] = counts(k) ? momentum[k] / mass[k] : 0.0;
-    unforeseen[k] = counts(k) ? sums[2].value(unit_force) / mass[k] : 0.0;
+    common[k] = constant[k] ? momentum[k] / mass[k] : 0.0;
+    unforeseen[k] = constant[k] ? sums[1].value(unit_force) / mass[k] : 0.0;
   }
 }
 
@@ -132,69 +131,16 @@ double TotalMomentum::twice_energy() const
   return sum;
 }
 
-/* ----------------------------------------------------------------------
-   test whether it is constant
-------------------------------------------------------------------------- */
-
-/// The largest sum of forces that counts as zero.
-double TotalMomentum::explained() const
-{
-  double most = PART_OF_THERMAL * thermal / period;
-  const KSpace *mesh = lmp->force->kspace;
-  if (mesh)
-    most += ERRORS_OF_MESH * mesh->accuracy * std::sqrt((double) atom->natoms) * lmp->force->ftm2v;
-  return most;
-}
-
-bool TotalMomentum::judge()
-{
-  const double most = explained();
-  const auto exceeds = [&](double part_of_forces) {
-    bool any = false;
-    for (int k = 0; k < 3; ++k)
-      any = any || (counts(k) && std::fabs(force[k]) > most + part_of_forces);
-    return any;
-  };
-  if (!exceeds(0.0)) return false;
-
-  double here = 0.0;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    for (const double one : bodies.load_of(ibody).force) here += std::fabs(one);
-  const double part = PART_OF_FORCES * over_ranks(MPI_SUM, here, world);
-  if (!exceeds(part)) return false;
-  for (int k = 0; k < 3; ++k)
-    if (counts(k) && std::fabs(force[k]) > most + part) constant[k] = false;
-  return true;
-}
-
-/* ----------------------------------------------------------------------
-   consequences
-------------------------------------------------------------------------- */
-
-double TotalMomentum::freedoms() const
-{
-  double sum = 0.0;
-  for (int k = 0; k < 3; ++k) sum += count[k] - counts(k);
-  return sum;
-}
-
 std::string TotalMomentum::description() const
 {
+  if (!any()) return "";
+  if (stated) return fmt::format(", without {} by fix_modify extra/dof,", subtracted);
+  if (!outside.empty()) return ", with those of the total momentum because " + outside + ",";
   std::vector<std::string> along;
   for (int k = 0; k < 3; ++k)
-    if (counts(k)) along.emplace_back(1, "xyz"[k]);
-  if (along.empty()) return "";
+    if (constant[k]) along.emplace_back(1, "xyz"[k]);
+  if (along.empty()) return ", with those of the total momentum,";
   const bool all = (int) along.size() == domain->dimension;
   return ", without those of the total momentum" +
       (all ? std::string() : " along " + utils::join_words(along, " and ")) + ",";
-}
-
-double TotalMomentum::record() const
-{
-  return constant[0] + 2.0 * constant[1] + 4.0 * constant[2];
-}
-
-void TotalMomentum::restore(double record)
-{
-  for (int k = 0; k < 3; ++k) constant[k] = ((int) record >> k) & 1;
 }

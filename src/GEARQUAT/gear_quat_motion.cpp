@@ -110,7 +110,6 @@ double Motion::longest_step() const
 
 void Motion::end_run()
 {
-  if (awaits_forces()) step.coupling->end_run();
   if (step.tolerance) step.tolerance->end_run();
 }
 
@@ -283,13 +282,11 @@ double Motion::last_error() const
 /// True if histories have to start; rank 0 prints the reason if they start again.
 bool Motion::has_to_start(double **f)
 {
-  if (step.coupling) step.coupling->meet_forces();
   const char *reason = step.started ? reason_to_start_anew(f) : nullptr;
   if (reason && comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat {}: {}; histories are rebuilt\n", fix->id, reason);
   const bool needs = !step.started || reason;
   movers = present_movers();
-  if (step.coupling) step.coupling->begin_steps(needs);
   if (needs) step.check_loads(f);
   return needs;
 }

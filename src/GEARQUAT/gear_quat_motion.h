@@ -36,10 +36,6 @@ class Motion : protected Pointers {
   void impose_masks();
   /// Called before the first step, when its poses, velocities and loads are present.  Collective.
   void begin_run();
-  /// True if degrees of freedom depend on forces that LAMMPS' setup may not have evaluated yet.
-  bool awaits_forces() const { return set_up && step.coupling && step.coupling->awaits_forces(); }
-  /// The loads include all fixes.  Collective.
-  void meet_forces() { step.coupling->meet_forces(); }
   void end_run();
 
   /// Before a step: bodies, and then their histories, adopt velocities that other fixes have given

@@ -26,7 +26,9 @@ Ownership::Ownership(LAMMPS *lmp, Fix *fix, Bodies &bodies, const Scheme &scheme
     Pointers(lmp), fix(fix), bodies(bodies), records(lmp, scheme)
 {
   if (atom->map_style == Atom::MAP_NONE)
-    error->all(FLERR, "Fix gear/quat requires an atom map, see atom_modify");
+    error->all(FLERR,
+               "Fix gear/quat requires an atom map: write atom_modify map yes before the box is "
+               "created");
   if (!atom->tag_enable) error->all(FLERR, "Fix gear/quat requires atom IDs");
   grow_arrays(atom->nmax);
   clear();
@@ -101,8 +103,10 @@ void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
     body_id[i] = one.body.id;
     owner_tag[i] = one.owner;
     std::copy_n(arm_body, 3, arm[i].begin());
+    free_atoms = free_atoms || one.moves_apart(atom->v[i], arm_body);
     if (any_extended) records.attach(i, mass_of(i), one.state.q);
   });
+  if (!fresh && !warned_of_shapes) warned_of_shapes = assembly.warn_of_shapes();
   for (const auto &one : assembly.bodies()) {
     if (one.owner_rank != comm->me) continue;
     const int ibody = add_owned(one.local);

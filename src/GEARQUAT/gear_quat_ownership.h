@@ -120,6 +120,8 @@ class Ownership : protected Pointers {
   bool change_masks(const std::map<tagint, Mask> &masks);
   /// Atoms in bodies, and large bodies, on all ranks.
   bigint number_of_atoms() const { return natoms; }
+  /// True if some atoms on this rank did not move as rigid bodies when they became bodies.
+  bool had_free_atoms() const { return free_atoms; }
   bigint number_of_large() const { return nlarge; }
   /// The box of the positions of bodies, as Domain::h and boxlo.
   const std::vector<double> &box() const { return last_box; }
@@ -168,10 +170,11 @@ class Ownership : protected Pointers {
   Extended records;
 
   bigint natoms = 0, nlarge = 0;    ///< on all ranks
-  int outside_atoms = 0;            ///< created since the fix was defined, in no body
-  bool warned_outside = false;      ///< of such atoms
-  bool any_ghosts = false;          ///< on some rank an atom belongs to a body of another rank
-                                    ///< that is not large; changes only when atoms are exchanged
+  bool free_atoms = false, warned_of_shapes = false;
+  int outside_atoms = 0;          ///< created since the fix was defined, in no body
+  bool warned_outside = false;    ///< of such atoms
+  bool any_ghosts = false;        ///< on some rank an atom belongs to a body of another rank
+                                  ///< that is not large; changes only when atoms are exchanged
   std::vector<double> last_box;
   std::vector<int> owner_atom;    ///< local index of the owner atom of an owned body
   std::vector<int> index;         ///< see body_of()

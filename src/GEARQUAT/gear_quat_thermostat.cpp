@@ -41,7 +41,7 @@ Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Thermo
                                        : words.separate ? 2
                                                         : 1,
                                    Chain(words.length)),
-    total(lmp, bodies, words.damp)
+    total(lmp, fix, bodies, words.damp)
 {
   set_scheme(scheme);
 }
@@ -327,6 +327,5 @@ void Thermostat::fields(Fields &v)
   line = made.line;
   damp_before = made.damp;
   std::copy_n(made.freedoms, 2, freedoms);
-  total.restore(made.constant);
   note_friction();
 }

@@ -7,17 +7,15 @@
    The chains need the kinetic energies of all bodies on all ranks.  Every pass of the corrector
    therefore reduces exact sums over all ranks, so that a run does not depend on the distribution of
    bodies.  A component of a momentum that is turned off by keywords force and torque is not
-   thermostatted, and neither is a constant total momentum (gear_quat_momentum.h).
+   thermostatted, and neither is a constant total momentum (gear_quat_momentum.h).  Bodies may start
+   from rest: the friction then becomes negative until forces have moved them.
 
    As in LAMMPS' thermostats, the target of a step changes linearly with the number of the step from
    the beginning to the end of the run.  A run without steps changes nothing.
 
    Insertion or removal of bodies changes the degrees of freedom and the kinetic energy at the end
-   of a step, and so does the onset of external forces.  The chains then receive the new
-   derivatives.  In a step with insertions or removals the chains are predicted and not corrected.
-
-   Before the first step of a run begin_run() has only the forces of fixes that are defined before
-   this fix; meet_forces() has all forces. */
+   of a step.  The chains then receive the new derivatives.  In such a step they are predicted and
+   not corrected. */
 
 #ifndef LMP_GEAR_QUAT_THERMOSTAT_H
 #define LMP_GEAR_QUAT_THERMOSTAT_H
@@ -28,7 +26,6 @@
 #include "gear_quat_exact_sum.h"
 #include "gear_quat_momentum.h"
 
-#include <array>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -51,12 +48,7 @@ class Thermostat : public Coupling {
   void begin_run(bool anew, double h) override;
   void set_scheme(const Scheme &scheme) override;
   double friction_ahead(double h) const override;
-  bool awaits_forces() const override { return true; }
-  void meet_forces() override;
-  /// If histories start, the total momentum is judged from the present forces alone.  Ends the run
-  /// if nothing that could be thermostatted moves.
-  void begin_steps(bool begins) override;
-  void end_run() override { tell_freedoms(); }
+  void subtract(int freedoms) override { words.subtracted = freedoms; }
   /// A reason if the target or the degrees of freedom have changed since the last run.
   const char *reason_to_start_anew() const override;
 
@@ -71,7 +63,6 @@ class Thermostat : public Coupling {
   /// Warns once of bodies that a thermostat cannot warm, and of a friction that is nearly too
   /// strong.
   void note_step(double h) override;
-  /// In an accepted step the forces show whether the total momentum is constant.
   void follow_changes(double h) override;
   void follow_velocities(double h) override;
   void keep() override { kept = chains; }
@@ -109,8 +100,8 @@ class Thermostat : public Coupling {
   };
   struct Setting {    ///< of a step
     Line line;
-    double freedoms[2], damp, constant;
-    template <class V> void fields(V &v) { v(line, freedoms, damp, constant); }
+    double freedoms[2], damp;
+    template <class V> void fields(V &v) { v(line, freedoms, damp); }
   };
 
   std::vector<Chain> chains, kept;    ///< of both parts, or one for both
@@ -118,12 +109,11 @@ class Thermostat : public Coupling {
   double twice[2] = {};               ///< twice the kinetic energies, as of the last sum
   bigint counted = 0;                 ///< number of bodies in the freedoms
   int changes = 0;                    ///< Bodies::changes() then
-  std::array<double, 3> told = {};    ///< last logged freedoms and total momentum
+  std::string told;                   ///< last message of the degrees of freedom
   Line line;                          ///< the target of the present step
   double damp_before = 0.0;           ///< of the steps so far
   Setting made = {};                  ///< of the last step before this run
   bool waiting = false;               ///< no step of this run has begun
-  bool anew = false;                  ///< no histories at the beginning of this run
   double friction[2] = {};            ///< xi_1 of the chains
   double most_friction;               ///< limit for bodies, times the step
   bool single_pass;                   ///< of the corrector
@@ -149,15 +139,14 @@ class Thermostat : public Coupling {
   Friction friction_of(int ibody) const;
   Setting setting() const;
   void count_freedoms();
-  void judge(double constant);
   void refuse_masks() const;
   void refuse_friction(double h) const;
   double strongest_friction() const;
   void settle_fresh(double h);
-  void refuse_nothing(bool meets_all) const;
+  void refuse_nothing() const;
   using Sums = ExactSum[2];
   void add_kinetic(int ibody, const double *velocity, const double *omega_body, Sums &sums) const;
-  /// of_states: with the total momentum and the forces of states and loads.
+  /// of_states: with the total momentum of the states.
   void sum_kinetic(const Sums &sums, bool of_states);
   double scale() const;
   void sum_present();
@@ -169,9 +158,9 @@ class Thermostat : public Coupling {
   void watch_friction(double h);
   double part_of_limit(double h) const;
   Chain::LeftOut left_out(double h, int values) const;
-  /// Rank 0 prints the degrees of freedom if they differ from the last message.  why: text before
-  /// the message.
-  virtual void tell_freedoms(const std::string &why = "");
+  void tell_freedoms();
+  /// Rank 0 prints the message if it differs from the last one.
+  void tell_once(std::string &last, const std::string &message) const;
 
   // the passes of a step
 

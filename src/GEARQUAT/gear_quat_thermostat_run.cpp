@@ -21,7 +21,6 @@
 #include "utils.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -61,57 +60,43 @@ void Thermostat::count_freedoms()
     const RigidBody &rigid = bodies.rigid_of(ibody);
     here += rigid.freedoms(domain->dimension) - domain->dimension;
   }
-  total.weigh();
+  total.weigh(words.subtracted);
   freedoms[TRANSLATION] = total.freedoms();
   freedoms[ROTATION] = over_ranks(MPI_SUM, here, world);
   counted = bodies.number();
   changes = bodies.changes();
 }
 
-/// Determines degrees of freedom from the present forces.  constant: the directions, as in a
-/// record, in which the total momentum was constant so far.
-void Thermostat::judge(double constant)
+void Thermostat::tell_once(std::string &last, const std::string &message) const
 {
-  total.restore(constant);
-  count_freedoms();
-  sum_present();
-  if (!total.judge()) return;
-  count_freedoms();
-  sum_present();
+  if (message != last && comm->me == 0)
+    utils::logmesg(lmp, "Fix gear/quat {}: {}\n", fix->id, message);
+  last = message;
 }
 
-void Thermostat::tell_freedoms(const std::string &why)
+void Thermostat::tell_freedoms()
 {
   if (!acts()) return;
-  const std::array<double, 3> now = {freedoms[TRANSLATION], freedoms[ROTATION], total.record()};
-  if (told == now) return;
-  told = now;
-  if (comm->me != 0) return;
-  utils::logmesg(lmp,
-                 "Fix gear/quat {}: {}thermostat of {:.0f} degrees of freedom of translation{} and "
-                 "{:.0f} of rotation\n",
-                 fix->id, why, freedoms[TRANSLATION], total.description(), freedoms[ROTATION]);
+  std::string now =
+      fmt::format("thermostat of {:.0f} degrees of freedom of translation{} and {:.0f} of rotation",
+                  freedoms[TRANSLATION], total.description(), freedoms[ROTATION]);
   const double common = 0.5 * total.twice_energy() / line.kt;
   if (common > TOLD_MOTION)
-    utils::logmesg(lmp,
-                   "Fix gear/quat {}: the bodies move together with a kinetic energy of {:.3g} kT, "
-                   "which is not part of their temperature; velocity zero linear removes it\n",
-                   fix->id, common);
+    now += fmt::format("; the bodies move together with a kinetic energy of {:.3g} kT, which is "
+                       "not part of their temperature: velocity zero linear removes it",
+                       common);
+  tell_once(told, now);
 }
 
 void Thermostat::follow_changes(double h)
 {
-  const bool released = total.judge();
-  if (!released && changes == bodies.changes()) return;
+  if (changes == bodies.changes()) return;
   ChainTarget before[2];
   for (size_t c = 0; c < chains.size(); ++c) before[c] = target_of(c, 0.0, h);
   count_freedoms();
   sum_present();
   for (size_t c = 0; c < chains.size(); ++c)
     chains[c].join(before[c], target_of(c, 0.0, h), twice_of(c));
-  if (released)
-    tell_freedoms(fmt::format("since step {} the forces on all bodies do not add up to zero, ",
-                              update->ntimestep));
 }
 
 /* ----------------------------------------------------------------------
@@ -122,21 +107,22 @@ void Thermostat::follow_changes(double h)
 Thermostat::Setting Thermostat::setting() const
 {
   if (waiting) return made;
-  return {line, {freedoms[TRANSLATION], freedoms[ROTATION]}, damp_before, total.record()};
+  return {line, {freedoms[TRANSLATION], freedoms[ROTATION]}, damp_before};
 }
 
-void Thermostat::begin_run(bool begins, double h)
+void Thermostat::begin_run(bool /*anew*/, double h)
 {
   refuse_masks();
   made = setting();
   waiting = true;
-  anew = begins;
   damp_before = words.damp;
   const bool moves = update->nsteps > 0 || made.line.kt == 0.0;
   line = moves ? line_of_step(update->ntimestep) : made.line;
-  meet_forces();
+  count_freedoms();
+  sum_present();
   note_friction();
-  refuse_nothing(false);
+  refuse_nothing();
+  tell_freedoms();
   refuse_friction(h);
   // a single pass uses only the predicted friction
   const double fewest = (single_pass ? 2.0 : 1.0) * FEWEST_STEPS;
@@ -147,18 +133,6 @@ void Thermostat::begin_run(bool begins, double h)
         "Fix gear/quat temp: a damping time of {:.3g} is less than {:.0f} time steps, and "
         "the motion may become unstable",
         words.damp, fewest);
-}
-
-void Thermostat::meet_forces()
-{
-  judge(anew ? TotalMomentum::IN_ALL : made.constant);
-}
-
-void Thermostat::begin_steps(bool begins)
-{
-  if (begins) judge(TotalMomentum::IN_ALL);
-  tell_freedoms();
-  refuse_nothing(true);
 }
 
 const char *Thermostat::reason_to_start_anew() const
@@ -193,25 +167,17 @@ void Thermostat::refuse_masks() const
                partly);
 }
 
-/// Friction cannot warm bodies at rest.
-void Thermostat::refuse_nothing(bool meets_all) const
+void Thermostat::refuse_nothing() const
 {
   if (!acts() || (words.may_wait && counted == 0)) return;
   if (!total.any() && freedoms[ROTATION] == 0.0)
     error->all(FLERR,
                "Fix gear/quat temp: keywords force and torque turn off all degrees of freedom of "
                "the bodies, so they have no temperature");
-  // the part of the kinetic energy that may still become heat
-  const double common = meets_all ? 0.0 : total.twice_energy();
-  if (meets_all && freedoms[TRANSLATION] + freedoms[ROTATION] == 0.0) return;
-  const char *missing =
-      part_at_rest({twice[TRANSLATION] + common, twice[ROTATION]},
-                   {freedoms[TRANSLATION] > 0.0, freedoms[ROTATION] > 0.0}, words.separate);
-  if (missing)
+  if (freedoms[TRANSLATION] < 0.0)
     error->all(FLERR,
-               "Fix gear/quat temp: the {}kinetic energy of the bodies is zero{}, and a "
-               "thermostat can only scale it; give them velocities first",
-               missing, total.twice_energy() > 0.0 ? " apart from a common motion" : "");
+               "Fix gear/quat temp: fix_modify extra/dof subtracts more degrees of freedom of "
+               "translation than the bodies have");
 }
 
 /* ----------------------------------------------------------------------

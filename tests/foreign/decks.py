@@ -96,7 +96,6 @@ CANNOT = (
 #: reasons why a deck that runs cannot be compared: part of the message, and text of the page
 INCOMPARABLE = (
     ("Resetting timestep size is not allowed", "another fix forbids a smaller step"),
-    ("rotational kinetic energy of the bodies is zero", "bodies do not rotate yet where it begins"),
 )
 #: the same for a deck with atom style line or tri whose results differ (doc/upstream/reports/triangles.md)
 TAKES_FOR_SPHERES = "fix rigid takes lines and triangles for spheres"

@@ -14,7 +14,7 @@ COLUMNS = "econserve ecouple f_move f_move[9] f_move[10] f_move[11] f_move[12] f
 
 def cluster(words, dt=0.004, time=0.8, run=None, every=None, style="", **settings):
     steps = round(time / dt)
-    settings = dict(box="-9 9 -9 9 -9 9", columns=COLUMNS) | settings
+    settings = dict(box="-60 60 -60 60 -60 60", boundary="p p p", columns=COLUMNS) | settings
     fix = f"gear/quat molecule {words}" if "rigid" not in words else words
     text = placed(
         settings.pop("bodies", MOLECULES),

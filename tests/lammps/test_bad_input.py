@@ -275,13 +275,6 @@ def test_scene(lmp, name, ranks):
 
 # keywords besides temp 1 1 0.1, before the fix, after it, message
 THERMOSTATS = {
-    "at rest": ("", "velocity all set 0 0 0", "", "the kinetic energy of the bodies is zero"),
-    "no spin": (
-        "thermostat separate",
-        "velocity all set 0.3 0 0.1",
-        "",
-        "the rotational kinetic energy of the bodies is zero",
-    ),
     "only held": (
         "force * off off off torque * off off off",
         "",
@@ -420,7 +413,7 @@ def test_group_that_becomes_dynamic(lmp):
 def test_no_atom_map(lmp):
     deck = two_molecules("single").replace("atom_style molecular", "atom_style atomic")
     deck = re.sub("atom_modify map array|set atom .* mol .", "", deck)
-    lmp.refuse(deck, "requires an atom map, see atom_modify")
+    lmp.refuse(deck, "requires an atom map: write atom_modify map yes before the box")
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

@@ -68,7 +68,7 @@ def test_what_was_there_for_a_look_only(lmp_tree):
     assert ends[0] == ends[1]
     look = result.thermo[3]
     freedoms = (2 * look["f_move[1]"][0]) / look["f_move[10]"][0]
-    assert freedoms == pytest.approx(10.0, rel=1e-10)
+    assert freedoms == pytest.approx(12.0, rel=1e-10)
 
 
 def test_what_came_for_good_is_noticed_behind_it(lmp_tree):
