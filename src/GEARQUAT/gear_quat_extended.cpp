@@ -55,7 +55,8 @@ static constexpr Data DATA[] = {
     // forces and other sums over neighbors, which every evaluation begins with zero
     {"f torque heatflow fm fm_long erforce edpd_flux cc_flux drho desph duChem", nullptr},
     // no direction
-    {"id type mask molecule molindex molatom nspecial special nspecial15 special15 id5p", nullptr},
+    {"id type mask molecule molindex molatom nspecial special nspecial15 special15 id3p id5p",
+     nullptr},
     {"num_bond bond_type bond_atom num_angle angle_type angle_atom1 angle_atom2 angle_atom3",
      nullptr},
     {"num_dihedral dihedral_type dihedral_atom1 dihedral_atom2 dihedral_atom3 dihedral_atom4",
@@ -66,7 +67,7 @@ static constexpr Data DATA[] = {
      nullptr},
     {"pressure viscosity dpdTheta uCond uMech uChem uCG uCGnew edpd_cv edpd_temp vest_temp cc",
      nullptr},
-    {"area ed em epsilon curvature q_scaled", nullptr},
+    {"area ed em epsilon curvature q_scaled qeff smin", nullptr},
     // a reference state, in which the distances of atoms count
     {"vfrac s0 x0", nullptr},
     {"body", nullptr},    // refused atom by atom
