@@ -91,8 +91,7 @@ void Barostat::find_temperature()
     const BodyState &s = bodies.state_of(ibody);
     here[0] += 2.0 * translational_energy(rigid, s.velocity) +
         2.0 * rotational_energy(rigid, s.omega_body);
-    here[1] += domain->dimension == 2 ? 2 + (rigid.inertia[2] > 0.0)
-                                      : 3 + rigid.rotational_freedoms();
+    here[1] += rigid.freedoms(domain->dimension);
   }
   const auto all = over_ranks(MPI_SUM, here, world);
   if (!(all[0] > 0.0))

@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Limits of a method with steps of h, found by trial with the method itself, so that no table is
-   needed: free rotations, vibrations, forces without derivatives, and friction.
+/* Limits of a method with steps of h: free rotations, forces without derivatives and friction, each
+   found by trial with the method itself, and vibrations, whose trials are too long for a run.
 
    The fastest rotation depends on the number of values, on the passes and on the moments of
    inertia; it is found by a trial of a free rotation.
