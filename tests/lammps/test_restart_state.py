@@ -170,7 +170,7 @@ NOT_IN_A_FILE = {
         COMMAND: "words most_friction single_pass",
         OTHERS: "fix",
         DERIVED: "made waiting line damp_before freedoms total friction of_all",
-        RUN: "anew changes twice_at_nodes held",
+        RUN: "changes twice_at_nodes held",
         STEP: "kept twice strong unit here same_bodies",
         MESSAGES: "told warned warned_friction",
     },
@@ -190,8 +190,8 @@ NOT_IN_A_FILE = {
     "motion Motion": {
         COMMAND: "masks",
         OTHERS: "fix args fleet bodies ownership others",
-        RUN: "set_up vibrations chosen damping watches next_look of_file",
-        MESSAGES: "advised_step warned_pass warned_values warned_errors warned_friction",
+        RUN: "set_up vibrations chosen of_file",
+        MESSAGES: "advised_step warned_pass warned_values warned_langevin",
     },
 }
 
