@@ -365,6 +365,31 @@ run 100
 """,
         "constant pressure cannot be used with fix 2 (langevin)", ("fix 2 all langevin 1.0 1.0 1.0 4711\n", ""),
     ),
+    "a gas at constant chemical potential": (
+        """
+units real
+atom_style full
+atom_modify map yes
+region box block 0 22 0 22 0 22
+create_box 2 box extra/bond/per/atom 2 extra/special/per/atom 4
+mass 1 12.011
+mass 2 15.9994
+pair_style lj/cut/coul/dsf 0.05 9.0
+pair_coeff 1 1 0.0537 2.80
+pair_coeff 2 2 0.1570 3.05
+pair_modify mix arithmetic
+molecule co2 co2.mol
+create_atoms 0 random 8 887 box mol co2 8871 overlap 3.0
+group gas type 1 2
+neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+velocity all create 300 4711
+timestep 1.0
+fix move gas rigid/nvt/small molecule temp 300 300 100 mol co2
+fix exchange gas gcmc 10 5 0 0 4712 300.0 -7.5 0.5 mol co2 rigid move tfac_insert 1.66667 group gas
+thermo 100
+run 200
+""",
+    ),
     "masses from a file": (
         BODIES
         + """
@@ -470,7 +495,7 @@ def test_converted_scripts_run(lmp_wheel, kind):
     before = lmp_wheel.run(script, timeout=300)
     assert "nve over" in kind or before.returncode == 0, before.output  # the script itself is right
     text = converted(script)
-    assert "rigid" not in re.sub("rigid 1 vz", "", text) and "gear/quat" in text
+    assert "rigid" not in re.sub("rigid 1 vz|rigid move", "", text) and "gear/quat" in text
     result, message = stops(text, lmp_wheel)
     if not rest:
         assert not message, result.output
