@@ -389,10 +389,14 @@ const ActOnAtoms *GearQuat::act_on_atoms(const Fix *fix)
 }
 
 /// LAMMPS shows the present target only.  In FixLangevin it is declared after three other numbers,
-/// in one line: first target, last target, damping time.
+/// in one line: first target, last target, damping time.  If the present target is not between the
+/// other two, the class has another layout, or the target is a variable.
 double GearQuat::damping_time(const Fix *langevin)
 {
   int dim = -1;
-  const void *target = const_cast<Fix *>(langevin)->extract("t_target", dim);
-  return target && dim == 0 ? static_cast<const double *>(target)[-1] : 0.0;
+  const void *found = const_cast<Fix *>(langevin)->extract("t_target", dim);
+  if (!found || dim != 0) return 0.0;
+  const auto *target = static_cast<const double *>(found);
+  const auto range = std::minmax(target[-3], target[-2]);
+  return range.first <= *target && *target <= range.second ? target[-1] : 0.0;
 }

@@ -103,7 +103,7 @@ struct ActOnAtoms {
 };
 /// The effect of a fix on atoms, null if the fix is not known to have such an effect.
 const ActOnAtoms *act_on_atoms(const Fix *fix);
-/// The damping time of a fix langevin, 0 if unknown.
+/// The damping time of a fix langevin in a run, 0 if unknown.
 double damping_time(const Fix *langevin);
 
 }    // namespace LAMMPS_NS::GearQuat
