@@ -5,6 +5,7 @@
 
 #include "gear_quat_blowup.h"
 
+#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -291,9 +292,11 @@ Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
     const Cause cause = coupling->instability(h);
     if (!cause.what.empty()) return cause;
   }
-  const std::string apart =
-      "Begin with atoms farther apart, for example after minimize or a run with keywords "
-      "tolerance and temp. ";
+  const std::string apart = known(PairFact::DISSIPATIVE, force)
+      ? fmt::format("The friction of pair style {} may be too strong for the time step. ",
+                    force->pair_style)
+      : "Begin with atoms farther apart, for example after minimize or a run with keywords "
+        "tolerance and temp. ";
   const Load &load = bodies.load_of(ibody);
   if (!std::isfinite(length(load.force) + length(load.torque_space)))
     return {"The forces became unstable first", apart + shorter_step(h)};

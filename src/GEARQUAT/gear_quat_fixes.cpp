@@ -90,7 +90,8 @@ void OtherFixes::refuse_thermostat(const Fix *other) const
 
 void OtherFixes::tell_noise()
 {
-  if (warned_noise || args.automatic_values) return;
+  const bool chosen = args.control.eps > 0.0 && !args.states("values");
+  if (warned_noise || args.automatic_values || chosen) return;
   const NoisyForces found = noise_of_forces(lmp, ownership);
   if (suits_noise(args.scheme, found.noise)) return;
   warned_noise = true;

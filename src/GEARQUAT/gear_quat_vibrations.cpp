@@ -41,8 +41,10 @@ bool Vibrations::note_step(double h)
 
 void Vibrations::record(double h)
 {
-  if (h != width) records.clear();
+  // forces of bodies that come or go are no vibrations
+  if (h != width || bodies.changes() != changes) records.clear();
   width = h;
+  changes = bodies.changes();
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     Record &one = records[bodies.body_at(ibody).id];
     if (one.steps == MotionSums::LEVELS) continue;

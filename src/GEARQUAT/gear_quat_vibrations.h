@@ -47,6 +47,7 @@ class Vibrations : protected Pointers {
   bigint first = -1;                             ///< first step of the present run
   bigint end = 0;                                ///< last step of the next window
   double width = 0.0;                            ///< step in the window
+  int changes = 0;                               ///< of the bodies, at the last record
   std::unordered_map<tagint, Record> records;    ///< by the IDs of bodies, which stay
 
   void choose_end();
