@@ -59,10 +59,11 @@ Compute *MolecularVirial::own() const
 void MolecularVirial::check_compute() const
 {
   if (own() && own()->pressflag) return;
-  error->all(FLERR,
-             "Fix gear/quat: compute {}, with which the fix asks LAMMPS for the virial, was deleted "
-             "or replaced; leave it, or define the fix again",
-             id);
+  error->all(
+      FLERR,
+      "Fix gear/quat: compute {}, with which the fix asks LAMMPS for the virial, was deleted "
+      "or replaced; leave it, or define the fix again",
+      id);
 }
 
 void MolecularVirial::request(bigint step) const

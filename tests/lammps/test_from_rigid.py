@@ -31,6 +31,7 @@ TRIED = {
         "run 1",
         "",
     ),
+    "temper": ("", "molecule", "fix bath all temp/csvr 1.0 1.0 0.1 4711\nrun 1", ""),    # what it needs
     "fix poems": ("", "file bodies.dat", "", "Unknown fix gear/quat bodystyle: file"),
     "infile": "test_infile_out.py",
     "reinit": ("", "molecule reinit no", "run 1\nrun 1", ""),

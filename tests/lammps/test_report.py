@@ -468,7 +468,7 @@ def test_no_word_of_a_body_that_meets_its_own_image(lmp_tree):
 
 
 # --- bodies that meet their own images -----------------------------------------------------------
-ROD = """
+LONG_ROD = """
 units lj
 atom_style molecular
 atom_modify map yes
@@ -499,11 +499,11 @@ EXCLUDED = "neigh_modify exclude molecule/intra all", "neigh_modify exclude grou
 def test_excluded_images(lmp, exclude, ranks):
     """A rod meets its own images: one warning if they are excluded, and none with each of the remedies."""
     told = "is so long that it meets its own periodic images"
-    deck = ROD.format(edge=5, exclude=exclude, words="")
+    deck = LONG_ROD.format(edge=5, exclude=exclude, words="")
     assert lmp.succeed(deck, ranks=ranks).words.count(told) == 1
     for remedy in (
         {"edge": 5, "exclude": "", "words": ""},
         {"edge": 9, "exclude": exclude, "words": ""},
         {"edge": 5, "exclude": exclude, "words": "torque * off off off"},
     ):
-        assert told not in lmp.succeed(ROD.format(**remedy), ranks=ranks).words
+        assert told not in lmp.succeed(LONG_ROD.format(**remedy), ranks=ranks).words
