@@ -154,6 +154,8 @@ static constexpr StyleFact<FixFact> FIXES[] = {
     {FixFact::CARRIES_BODIES, "^box/relax", "remap() between minimizations"},
     {FixFact::NO_FORCE, "^enforce2d", "sets components along z to 0, where nothing is held"},
     {FixFact::NO_FORCE, "^store/force", "copies forces"},
+    {FixFact::NO_FORCE, "^numdiff", "differences of energies, after which forces are put back"},
+    {FixFact::NO_FORCE, "^nonaffine/displacement", "reads positions"},
     {FixFact::NO_FORCE, "^INTEL", "adds up what threads have computed"},
     {FixFact::NO_FORCE, "^GPU", "receives what a device has computed"},
     {FixFact::NO_LOCAL_DATA, "^ave/atom", "per-atom data"},

@@ -12,6 +12,7 @@
 #include "domain.h"
 #include "fix.h"
 #include "force.h"
+#include "modify.h"
 #include "utils.h"
 
 #include <algorithm>
@@ -32,19 +33,24 @@ bool TotalMomentum::belongs(int ibody, int direction) const
   return direction < domain->dimension && !(bodies.body_at(ibody).off & force_off(direction));
 }
 
-std::string TotalMomentum::find_outside() const
+std::string TotalMomentum::find_outside(bool bodies_come) const
 {
   bigint here = 0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here += bodies.body_at(ibody).natoms;
   const bigint others = atom->natoms - over_ranks(MPI_SUM, here, world);
   if (others > 0) return fmt::format("{} atoms are in no body of this fix", others);
   if (const Fix *other = fix_with_forces(lmp, fix)) return name_of(other) + " may exert forces";
+  for (const auto *other : modify->get_fix_list()) {
+    const ActOnAtoms *row = act_on_atoms(other);
+    if (!bodies_come && row && row->act == ActOnAtoms::EXCHANGE)
+      return name_of(other) + " may insert atoms";
+  }
   if (known(PairFact::BACKGROUND, lmp->force))
     return std::string("pair style ") + lmp->force->pair_style + " exerts forces from outside";
   return "";
 }
 
-void TotalMomentum::weigh(int stated_freedoms)
+void TotalMomentum::weigh(int stated_freedoms, bool bodies_come)
 {
   double heaviest = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
@@ -72,7 +78,7 @@ void TotalMomentum::weigh(int stated_freedoms)
 
   const int d = domain->dimension;
   stated = stated_freedoms >= 0;
-  outside = find_outside();
+  outside = find_outside(bodies_come);
   subtracted = 0;
   for (int k = 0; k < d; ++k) {
     constant[k] = stated

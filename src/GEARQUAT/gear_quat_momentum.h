@@ -49,8 +49,9 @@ class TotalMomentum : protected Pointers {
   /// not along z in two dimensions.
   bool belongs(int ibody, int direction) const;
   /// Counts and masses of the bodies, and the rule.  subtracted: degrees of freedom of translation
-  /// that do not count, negative for the rule; if they are all of P, P is constant.  Collective.
-  void weigh(int subtracted);
+  /// that do not count, negative for the rule; if they are all of P, P is constant.  bodies_come:
+  /// what other fixes insert are bodies.  Collective.
+  void weigh(int subtracted, bool bodies_come);
 
   /// Called before the sums of a step. kt: of the thermostat.
   void begin_sums(double kt);
@@ -94,7 +95,7 @@ class TotalMomentum : protected Pointers {
   ExactSum differences[3];    ///< of forces on this rank, for unforeseen
   double unit_momentum = 1.0, unit_force = 1.0;
 
-  std::string find_outside() const;
+  std::string find_outside(bool bodies_come) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -109,6 +109,7 @@ class Thermostat : public Coupling {
   double twice[2] = {};               ///< twice the kinetic energies, as of the last sum
   bigint counted = 0;                 ///< number of bodies in the freedoms
   int changes = 0;                    ///< Bodies::changes() then
+  bigint natoms = 0;                  ///< all atoms then: others decide whether momentum counts
   std::string told;                   ///< last message of the degrees of freedom
   Line line;                          ///< the target of the present step
   double damp_before = 0.0;           ///< of the steps so far

@@ -12,6 +12,7 @@
 #include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -60,11 +61,12 @@ void Thermostat::count_freedoms()
     const RigidBody &rigid = bodies.rigid_of(ibody);
     here += rigid.freedoms(domain->dimension) - domain->dimension;
   }
-  total.weigh(words.subtracted);
+  total.weigh(words.subtracted, words.may_wait);
   freedoms[TRANSLATION] = total.freedoms();
   freedoms[ROTATION] = over_ranks(MPI_SUM, here, world);
   counted = bodies.number();
   changes = bodies.changes();
+  natoms = atom->natoms;
 }
 
 void Thermostat::tell_once(std::string &last, const std::string &message) const
@@ -90,7 +92,7 @@ void Thermostat::tell_freedoms()
 
 void Thermostat::follow_changes(double h)
 {
-  if (changes == bodies.changes()) return;
+  if (changes == bodies.changes() && natoms == atom->natoms) return;
   ChainTarget before[2];
   for (size_t c = 0; c < chains.size(); ++c) before[c] = target_of(c, 0.0, h);
   count_freedoms();

@@ -335,7 +335,9 @@ class Campaign:
         wrong = worst(distances(*self._answers(SceneRun(plain)), answer), SAME)
         if outcome.a_try.kind == FORCE and not wrong:
             outcome.faults.append("it has no effect in this scene")
-        if outcome.a_try.kind == PASSIVE and wrong:
+        # by the rule of keyword temp, the total momentum then counts, also beside a force of zero
+        counts = any("may exert forces" in line for line in answer.warnings)
+        if outcome.a_try.kind == PASSIVE and wrong and not counts:
             outcome.faults.append(f"alone: {wrong}")
 
     def _counted(self, outcome, answers):

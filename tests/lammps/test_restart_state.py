@@ -170,7 +170,7 @@ NOT_IN_A_FILE = {
         COMMAND: "words most_friction single_pass",
         OTHERS: "fix",
         DERIVED: "made waiting line damp_before freedoms total friction of_all",
-        RUN: "changes twice_at_nodes held",
+        RUN: "changes natoms twice_at_nodes held",
         STEP: "kept twice strong unit here same_bodies",
         MESSAGES: "told warned warned_friction",
     },
