@@ -146,14 +146,18 @@ void DrivenBox::refuse_jump() const
     const double ratio = domain->h[k] / ownership.box()[k];
     if (std::fabs(ratio - 1.0) < JUMP) continue;
     double larger = std::fabs(1.0 - ratio * ratio * ratio) / (3.0 * SMALL);
-    if (!std::isfinite(larger)) larger = 1.0 / SMALL;    // the cube root of a negative number
+    std::string change = fmt::format("by a factor of {:.3g}", ratio);
+    if (!std::isfinite(ratio)) {    // the cube root of a negative number
+      change = "to a value that is not a number";
+      larger = 1.0 / SMALL;
+    }
     for (const auto *other : modify->get_fix_list())
       if (other != fix && changes_box(other) && !utils::strmatch(other->style, "^deform"))
         error->all(FLERR,
-                   "Fix gear/quat: fix {} ({}) has changed the length of the box along {} by a "
-                   "factor of {:.3g} in step {}; make its Pdamp, or the modulus of fix "
-                   "press/berendsen, {:.2g} times larger",
-                   other->id, other->style, "xyz"[k], ratio, update -> ntimestep,
+                   "Fix gear/quat: fix {} ({}) has changed the length of the box along {} {} in "
+                   "step {}; make its Pdamp, or the modulus of fix press/berendsen, {:.2g} times "
+                   "larger",
+                   other->id, other->style, "xyz"[k], change, update -> ntimestep,
                    rounded_up(larger));
   }
 }
