@@ -41,8 +41,9 @@ problem was made: compare q within one problem, sites between two.  A reference 
 
 Files: quaternion.py; equations.py (bodies, state, rates, energies); fields.py (cage, none);
 lammps_forces.py (LAMMPS' own forces); paper.py (the paper's body and starts); integrators.py
-(Gragg-Bulirsch-Stoer); free_top.py (exact); store.py (cache); solvers.py (errors; SciPy);
-splittings.py (Runge-Kutta-Nystroem with exact free rotation); stability.py (stable steps of Gear's
+(Gragg-Bulirsch-Stoer); free_top.py (exact); store.py (cache); solvers.py (errors; solvers that
+control their steps); runge_kutta.py (a pair 8(7)); multistep.py (symmetric, order 8); splittings.py
+(Runge-Kutta-Nystroem and others with exact free rotation); stability.py (stable steps of Gear's
 methods for a linear equation).
 """
 

@@ -1,11 +1,13 @@
-"""The cost of accuracy with SciPy's solvers DOP853 and LSODA, in force evaluations.
+"""The cost of accuracy with solvers that control their steps, in force evaluations.
 
 Every call of the right-hand side counts, for any purpose; LSODA chooses between Adams and BDF itself and gets no
 Jacobian, so the calls for a Jacobian by differences are included.  It keeps room for a full Jacobian: 340 MB for 500
 bodies.
 
-CVODE of SUNDIALS is there where the Python package scikit-sundae is installed.  BDF is with Newton's
-method and a Jacobian of differences, Adams with functional iteration, which needs none.
+DDEABM, the Adams method of variable step and order of L. F. Shampine and M. K. Gordon, is SWAG of the Python package
+extensisq.  The pair of orders 8(7) is in runge_kutta.py.  CVODE of SUNDIALS is there where the Python package
+scikit-sundae is installed.  BDF is with Newton's method and a Jacobian of differences, Adams with functional iteration,
+which needs none.
 """
 
 from dataclasses import dataclass
@@ -15,9 +17,11 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from . import quaternion as qt
-from .equations import State
+from .equations import PARTS, State
+from .runge_kutta import TsitourasPapakostas
 
 METHODS = ("DOP853", "LSODA")
+DDEABM, PAIR = "DDEABM", "Tsitouras–Papakostas 8(7)"
 #: methods of CVODE: name here -> name there
 CVODE = {"CVODE Adams": "Adams", "CVODE BDF": "BDF"}
 #: SciPy raises a smaller relative tolerance to this value, with a warning
@@ -70,6 +74,14 @@ def available():
     return METHODS + (tuple(CVODE) if find_spec("sksundae") else ())
 
 
+def weights(length, angle, time):
+    """Errors (13,) of a packed state that weigh the same: a length, an angle, and their rates over a time."""
+    found = np.empty(13)
+    for name, unit in zip(PARTS, (length, length / time, angle, angle / time)):
+        found[PARTS[name]] = unit
+    return found
+
+
 def _of_cvode(rates, span, start, method, rtol, atol):
     """``solve_ivp`` with CVODE: (success, message, states at its own steps (n, size))."""
     from sksundae.cvode import CVODE as Solver
@@ -89,20 +101,24 @@ def _of_cvode(rates, span, start, method, rtol, atol):
 
 def _of_scipy(rates, span, start, method, rtol, atol):
     """The same of SciPy's methods."""
+    if method == DDEABM:
+        from extensisq import SWAG as method
+    elif method == PAIR:
+        method = TsitourasPapakostas
     # no times in between are requested, because dense output would call the right-hand side additionally
     solution = solve_ivp(rates, span, start, method, rtol=rtol, atol=atol)
     return solution.success, solution.message, solution.y.T
 
 
-def _solution(problem, time, method, tolerance):
+def _solution(problem, time, method, tolerance, weights=None):
     """Packed states (n, B, 13) at the steps of a method in double precision, and the evaluations.
 
-    ``tolerance`` is relative to each component and to the largest of its kind (position, velocity,
-    quaternion, angular velocity), whichever is larger.
+    ``tolerance`` is relative to each component and to the largest of its kind (position, velocity, quaternion, angular
+    velocity), whichever is larger, or to the ``weights`` (13,) alone.
     """
-    if method not in (*METHODS, *CVODE):
-        raise ValueError(f"the method is one of {', '.join((*METHODS, *CVODE))}, not {method}")
-    if not tolerance >= SMALLEST_TOLERANCE:
+    if method not in (known := (*METHODS, DDEABM, PAIR, *CVODE)):
+        raise ValueError(f"the method is one of {', '.join(known)}, not {method}")
+    if weights is None and not tolerance >= SMALLEST_TOLERANCE:
         raise ValueError(f"a tolerance of at least {SMALLEST_TOLERANCE:.2g} is required")
     double = problem.astype(np.float64)
     start = double.start.packed()
@@ -113,19 +129,20 @@ def _solution(problem, time, method, tolerance):
         evaluations += 1
         return double.rates(t, y.reshape(start.shape)).ravel()
 
-    scale = double.scales(start)
+    scale = double.scales(start) if weights is None else weights
     absolute = np.broadcast_to(tolerance * np.where(scale > 0, scale, 1), start.shape).ravel()
+    relative = tolerance if weights is None else SMALLEST_TOLERANCE
     solver = _of_cvode if method in CVODE else _of_scipy
     task = (rates, (0.0, float(time)), start.ravel(), CVODE.get(method, method))
-    success, message, states = solver(*task, rtol=tolerance, atol=absolute)
+    success, message, states = solver(*task, rtol=relative, atol=absolute)
     if not success:
         raise RuntimeError(f"{method} at tolerance {tolerance:g}: {message}")
     return states.reshape(-1, *start.shape), evaluations
 
 
-def solve(problem, time, method, tolerance):
+def solve(problem, time, method, tolerance, weights=None):
     """State of a Problem at ``time`` by a method, and the evaluations; see ``_solution``."""
-    steps, evaluations = _solution(problem, time, method, tolerance)
+    steps, evaluations = _solution(problem, time, method, tolerance, weights)
     return State.of(steps[-1]), evaluations
 
 

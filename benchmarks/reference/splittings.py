@@ -9,7 +9,8 @@ Nystroem keep their order.  Each kick takes one evaluation of the forces; the la
 shares its evaluation with the first kick of the next step.
 
 S. Blanes and P. C. Moan, J. Comput. Appl. Math. 142, 313 (2002): SRKN6b, SRKN11b and SRKN14a.
-W. Kahan and R.-C. Li, Math. Comput. 66, 1089 (1997): s17odr8a.  The free rotation by Jacobi's elliptic functions
+W. Kahan and R.-C. Li, Math. Comput. 66, 1089 (1997): s17odr8a.  J. Laskar and P. Robutel, Celest. Mech. Dyn. Astron. 80,
+39 (2001): SABA4.  S. Blanes et al., Appl. Numer. Math. 68, 58 (2013): ABA(10,6,4).  The free rotation by Jacobi's elliptic functions
 follows R. van Zon and J. Schofield, Phys. Rev. E 75, 056701 (2007), with the formulas of free_top.py in double
 precision: ``FreeRotation``.
 """
@@ -109,6 +110,27 @@ SPLITTINGS = (
         ),
     ),
     composed("Kahan–Li 8, 17 stages", 8, KAHAN_LI),
+)
+
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+#: for weak forces: errors are small in powers of the forces and of the step, as SABA4 has eps h^8 and eps^2 h^2
+NEARLY_FREE = (
+    Splitting("SABA4, 4 stages", 2, tuple(np.diff([-1, *_NODES, 1]) / 2), tuple(_WEIGHTS / 2)),
+    Splitting(
+        "ABA(10,6,4), 8 stages",
+        4,
+        symmetric(
+            *(0.03809449742241219545697532230863756534060, 0.1452987161169137492940200726606637497442),
+            *(0.2076276957255412507162056113249882065158, 0.4359097036515261592231548624010651844006),
+            even=False,
+        ),
+        symmetric(
+            *(0.09585888083707521061077150377145884776921, 0.2044461531429987806805077839164344779763),
+            0.2170703479789911017143385924306336714532,
+            even=True,
+        ),
+    ),
 )
 
 

@@ -1,4 +1,4 @@
-"""Splittings with exact free rotation: orders by slope, symmetry, the exact top, counted evaluations."""
+"""Splittings with exact free rotation and a symmetric multistep method: orders by slope, the exact top, counts."""
 
 from dataclasses import replace
 
@@ -10,13 +10,14 @@ from benchmarks.reference import (
     Problem,
     RigidBodies,
     State,
+    multistep,
     reference_state,
     splittings,
 )
 from benchmarks.reference.fields import LennardJonesUnits
 from benchmarks.reference.free_top import exact_state
 from benchmarks.reference.solvers import state_errors
-from benchmarks.reference.splittings import SPLITTINGS, Motion, states
+from benchmarks.reference.splittings import NEARLY_FREE, SPLITTINGS, Motion, states
 
 LONG = np.longdouble
 LABELS = [splitting.label for splitting in SPLITTINGS]
@@ -91,6 +92,32 @@ def test_order_on_a_driven_top(splitting):
         assert 1e-13 < errors[1] < 1e-5
 
 
+def weak_order(splitting, counts):
+    """Order of the change of x and v to first order in the force of x'' = -eps sin 2x."""
+    end, errors = LONG(4), []
+    exact = [(np.sin(2 * end + 1) - np.sin(LONG(1))) / 4 - end * np.cos(LONG(1)) / 2]
+    exact.append((np.cos(2 * end + 1) - np.cos(LONG(1))) / 2)
+    for steps in counts:
+        x, dx, dv, h = LONG(1) / 2, LONG(0), LONG(0), end / steps
+        for is_kick, part in steps * splitting.parts:
+            if is_kick:
+                dv -= part * h * np.sin(2 * x)
+            else:
+                x, dx = x + part * h, dx + part * h * dv
+        errors.append(max(abs(dx - exact[0]), abs(dv - exact[1])))
+    return slopes(errors, counts)[0]
+
+
+@pytest.mark.parametrize("splitting, order", list(zip(NEARLY_FREE, (8, 10))), ids=lambda x: getattr(x, "label", x))
+def test_order_under_weak_forces(splitting, order):
+    """The order of SABA4 is 8, and that of ABA(10,6,4) 10, in the limit of weak forces."""
+    assert oscillator_order(splitting) == pytest.approx(splitting.order, abs=0.3)
+    assert weak_order(splitting, (8, 12)) == pytest.approx(order, abs=0.5)
+    for name in ("kicks", "drifts"):
+        for place in range((len(getattr(splitting, name)) - 1) // 2):
+            assert weak_order(spoiled(splitting, name, place), (8, 12)) < order / 2
+
+
 def spoiled(splitting, name, place):
     """The Splitting with an error of 1 % in one entry and its mirror image; the sum stays 1."""
     parts = np.array(getattr(splitting, name))
@@ -114,6 +141,26 @@ def test_a_wrong_coefficient_spoils_the_order(splitting, name, place):
     wrong = spoiled(splitting, name, place)
     assert sum(wrong.kicks) == pytest.approx(1) == sum(wrong.drifts)
     assert oscillator_order(wrong) < splitting.order - 0.3
+
+
+def multistep_order(counts=(300, 450)):
+    """Orders of positions and orientations of the driven top."""
+    top = driven_top()
+    exact, errors = reference_state(top, 6.0), []
+    for steps in counts:
+        off = state_errors(top, exact, multistep.solve(top, 6.0, steps)[0])
+        errors.append((off.rms_center, off.rms_angle, abs(off.energy)))
+    return [slopes(own, counts)[0] for own in np.transpose(errors)]
+
+
+def test_order_of_the_multistep_method(monkeypatch):
+    assert np.allclose(multistep_order(), 8, atol=0.7)
+    weights = multistep.adams_moulton(9)
+    assert [(weights * np.arange(-8.0, 1.0) ** k).sum() for k in range(9)] == pytest.approx(
+        [-((-1) ** (k + 1)) / (k + 1) for k in range(9)], abs=1e-8
+    )
+    monkeypatch.setattr(multistep, "B", multistep.B * np.where(np.arange(8) == 4, 1.01, 1))
+    assert max(multistep_order()[:2]) < 1
 
 
 # --- motion ---------------------------------------------------------------------------------------
@@ -162,3 +209,9 @@ def test_every_evaluation_is_counted(splitting):
     assert splitting.stages == int(splitting.label.split()[-2])
     (end, _), *_ = states(driven_top(), 2.0, splitting, 6)
     assert (end.packed() == found[-1][0].packed()).all()
+
+
+def test_the_multistep_method_evaluates_once_per_step(monkeypatch):
+    calls, load = [], multistep._History.load
+    monkeypatch.setattr(multistep._History, "load", lambda *args: calls.append(1) or load(*args))
+    assert multistep.solve(driven_top(), 2.0, 40)[1] == len(calls) == 41
