@@ -31,7 +31,10 @@ class AnyNorm {
  public:
   explicit AnyNorm(const Scheme &scheme) : on(scheme.any_norm()), repeats(scheme.passes == 0)
   {
-    if (scheme.values() == 7) {
+    if (scheme.values() == 3) {
+      slow = 0.4;
+      fast = 0.6;
+    } else if (scheme.values() == 7) {
       slow = 0.2;
       fast = 0.3;
     } else if (scheme.values() == 9) {

@@ -292,7 +292,7 @@ Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
     const Cause cause = coupling->instability(h);
     if (!cause.what.empty()) return cause;
   }
-  const std::string apart = known(PairFact::DISSIPATIVE, force)
+  const std::string apart = known(PairFact::DISSIPATIVE, force) || known(PairFact::RANDOM, force)
       ? fmt::format("The friction of pair style {} may be too strong for the time step. ",
                     force->pair_style)
       : "Begin with atoms farther apart, for example after minimize or a run with keywords "

@@ -184,6 +184,11 @@ struct ChoiceOfValues {
     if (!scheme.first() && scheme.tuned) choice = {by_motion(scheme, present), Reason::MOTION};
     if (permits(choice.scheme)) return choice;
     choice.reason = suits_noise(choice.scheme, noise) ? Reason::FRICTION : Reason::NOISE;
+    if (noise == Noise::RANDOM && !scheme.first()) {
+      choice.scheme.tuned = true;
+      choice.scheme.rows = VERLET;
+      return choice;
+    }
     for (const Scheme &other : others(scheme)) {
       choice.scheme = other;
       if (permits(other)) break;

@@ -91,28 +91,32 @@ void OtherFixes::refuse_thermostat(const Fix *other) const
 void OtherFixes::tell_noise()
 {
   const bool chosen = args.control.eps > 0.0 && !args.states("values");
-  if (warned_noise || args.automatic_values || chosen) return;
+  if (warned_noise || chosen) return;
   const NoisyForces found = noise_of_forces(lmp, ownership);
-  if (suits_noise(args.scheme, found.noise)) return;
+  const bool first = args.scheme.first() && found.noise == Noise::RANDOM;
+  if (!first && (args.automatic_values || suits_noise(args.scheme, found.noise))) return;
   warned_noise = true;
   if (comm->me == 0)
     error->warning(FLERR,
-                   "Fix gear/quat: {}, and {} values turn them into heat; leave out keywords "
-                   "values and corrector",
-                   found.words(), args.scheme.values());
+                   "Fix gear/quat: {}, and {} cannot follow them; leave out keywords {}values and "
+                   "corrector",
+                   found.words(),
+                   first ? "formulation first" : fmt::format("{} values", args.scheme.values()),
+                   first ? "formulation, " : "");
 }
 
 NoisyForces GearQuat::noise_of_forces(LAMMPS *lmp, const Ownership &ownership)
 {
-  if (known(PairFact::DISSIPATIVE, lmp->force))
-    return {Noise::DISSIPATIVE, fmt::format("pair style {}", lmp->force->pair_style)};
+  const std::string pair = fmt::format("pair style {}", lmp->force->pair_style);
+  if (known(PairFact::RANDOM, lmp->force)) return {Noise::RANDOM, pair};
   NoisyForces found;
+  if (known(PairFact::DISSIPATIVE, lmp->force)) found = {Noise::DISSIPATIVE, pair};
   for (const auto *fix : lmp->modify->get_fix_list()) {
-    const bool dissipates = known(FixFact::DISSIPATIVE, fix);
-    if (!dissipates && !known(FixFact::RANDOM, fix)) continue;
+    const bool random = known(FixFact::RANDOM, fix);
+    if (!random && (found.noise != Noise::NONE || !known(FixFact::DISSIPATIVE, fix))) continue;
     if (!known(FixFact::BESIDE_GROUP, fix) && !shared_atom(lmp, ownership, fix)) continue;
-    if (dissipates) return {Noise::DISSIPATIVE, name_of(fix)};
-    if (found.noise == Noise::NONE) found = {Noise::RANDOM, name_of(fix)};
+    if (random) return {Noise::RANDOM, name_of(fix)};
+    found = {Noise::DISSIPATIVE, name_of(fix)};
   }
   return found;
 }

@@ -32,7 +32,7 @@ struct ActOnAtoms;
 /// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.
 tagint shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix *other);
 
-/// Forces without derivatives on bodies, and the style with the strongest ones.
+/// Forces without derivatives on bodies, random ones first, and their style.
 struct NoisyForces {
   Noise noise = Noise::NONE;
   std::string style;

@@ -56,7 +56,7 @@ struct Scheme {
   bool any_norm() const
   {
     const int n = values();
-    return projection == Projection::AUTO && !first() && tuned && (n == 5 || n == 7 || n == 9);
+    return projection == Projection::AUTO && !first() && tuned && n % 2 == 1 && n < 11;
   }
   /// Passes of a body.  If passes is 0, a rotation with any_norm() is corrected until it converges.
   int fixed_passes() const { return passes ? passes : AUTOMATIC_PASSES; }

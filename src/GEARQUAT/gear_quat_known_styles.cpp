@@ -57,9 +57,9 @@ static constexpr StyleFact<PairFact> PAIRS[] = {
      "reads kernels and interfaces that fix rheo computes once in a step"},
     {PairFact::UNREPEATABLE, "^smd",
      "deformations, stresses and damage are integrated by every evaluation"},
-    {PairFact::DISSIPATIVE, "^[emst]?dpd", "friction and a random force on every pair"},
-    {PairFact::DISSIPATIVE, "^brownian", "friction and a random force on every atom"},
-    {PairFact::DISSIPATIVE, "^dsmc", "random collisions"},
+    {PairFact::RANDOM, "^[emst]?dpd", "friction and a random force on every pair"},
+    {PairFact::RANDOM, "^brownian", "friction and a random force on every atom"},
+    {PairFact::RANDOM, "^dsmc", "random collisions"},
     {PairFact::DISSIPATIVE, "^gran", "forces set in, and are damped, where particles touch"},
     {PairFact::DISSIPATIVE, "^bpm", "as gran"},
     {PairFact::DISSIPATIVE, "^lubricate", "friction of the fluid between particles"},
@@ -129,7 +129,7 @@ static constexpr StyleFact<FixFact> FIXES[] = {
     {FixFact::RANDOM, "^gld", "random forces with memory, and it integrates itself"},
     {FixFact::RANDOM, "^ttm", "random forces by the temperature of electrons"},
     {FixFact::RANDOM, "^qtb", "random forces with memory, with friction"},
-    {FixFact::DISSIPATIVE, "^srd", "collisions with its particles, each a force of one step"},
+    {FixFact::RANDOM, "^srd", "collisions with its particles, each a force of one step"},
     {FixFact::DISSIPATIVE, "^wall/gran", "forces set in, and are damped, where particles touch it"},
     {FixFact::DISSIPATIVE, "^damping/cundall", "its forces change sign with velocities"},
     {FixFact::BESIDE_GROUP, "^srd", "its particles collide with atoms of another group"},
@@ -388,17 +388,4 @@ const ActOnAtoms *GearQuat::act_on_atoms(const Fix *fix)
   for (const auto &row : ACTS_ON_ATOMS)
     if (utils::strmatch(fix->style, row.pattern)) return &row;
   return nullptr;
-}
-
-/// LAMMPS shows the present target only.  In FixLangevin it is declared after three other numbers,
-/// in one line: first target, last target, damping time.  If the present target is not between the
-/// other two, the class has another layout, or the target is a variable.
-double GearQuat::damping_time(const Fix *langevin)
-{
-  int dim = -1;
-  const void *found = const_cast<Fix *>(langevin)->extract("t_target", dim);
-  if (!found || dim != 0) return 0.0;
-  const auto *target = static_cast<const double *>(found);
-  const auto range = std::minmax(target[-3], target[-2]);
-  return range.first <= *target && *target <= range.second ? target[-1] : 0.0;
 }

@@ -30,7 +30,8 @@ std::string name_of(const Fix *fix);
 /// Properties of a pair style, also as a part of a hybrid style.
 enum class PairFact {
   UNREPEATABLE,       ///< its forces differ, or may differ, when they are evaluated again
-  DISSIPATIVE,        ///< its forces damp motion, and may be random or set in where atoms touch
+  RANDOM,             ///< its forces are random
+  DISSIPATIVE,        ///< its forces damp motion, and may set in where atoms touch
   READS_VARIABLES,    ///< it may evaluate variables of the script
   BACKGROUND,         ///< forces between atoms and a fluid at rest: they change the total momentum
 };
@@ -42,7 +43,7 @@ enum class FixFact {
   THREADS,       ///< pre_force() clears the forces of the threads of the OPENMP package
   WITHOUT_VARIABLES,    ///< of REPEATABLE: evaluates no variables of the script
   RANDOM,               ///< its forces or changes of velocities are random
-  DISSIPATIVE,          ///< its forces damp motion, and set in where atoms touch or collide
+  DISSIPATIVE,          ///< its forces damp motion, and set in where atoms touch
   BESIDE_GROUP,         ///< its forces act on atoms outside of its group
   THERMOSTAT,           ///< it controls a temperature, by forces or by velocities
   TIME_STEP,            ///< it changes the time step
@@ -103,8 +104,6 @@ struct ActOnAtoms {
 };
 /// The effect of a fix on atoms, null if the fix is not known to have such an effect.
 const ActOnAtoms *act_on_atoms(const Fix *fix);
-/// The damping time of a fix langevin in a run, 0 if unknown.
-double damping_time(const Fix *langevin);
 
 }    // namespace LAMMPS_NS::GearQuat
 

@@ -15,9 +15,6 @@
    F/m.  Forces that are independent from step to step change the velocity in a step by sum d_k^2
    times the correct mean square.
 
-   Friction is evaluated at predicted velocities.  The accuracy of a method under friction is
-   measured by the mean square of a momentum driven by random kicks, which the friction determines.
-
    The friction of a coupling is treated separately.  A step of h maps the rows of a free body under
    the constant friction xi: it predicts, then adds c_j times the residual of
    Integrator::correct_pass().  This map is linear and depends on h xi alone.  If its spectral
@@ -105,14 +102,14 @@ inline double fastest_oscillation(const Scheme &scheme)
 {
   constexpr int FEWEST = 3;    // values of the first column
   constexpr double FASTEST[][MAX_VALUES - FEWEST + 1] = {
-      {0.0, 1.40, 0.36, 0.42, 0.62, 0.46, 0.32, 0.24, 0.16, 0.12},    // second formulation, Gear's
-      {0.0, 0.24, 0.32, 0.44, 0.60, 0.44, 0.32, 0.22, 0.16, 0.12},    // with c0 of velocities
-      {0.0, 1.04, 0.90, 0.54, 0.70, 0.66, 0.60, 0.56, 0.60, 0.50},    // tuned
-      {0.0, 1.04, 0.96, 0.54, 0.70, 0.66, 0.60, 0.56, 0.60, 0.50},    // with any_norm()
-      {1.00, 0.92, 0.28, 0.34, 0.24, 0.12},                           // first formulation, Gear's
-      {0.72, 0.42, 0.22, 0.10, 0.04, 0.02},                           // with predicted momentum
-      {1.48, 0.86, 0.64, 0.60, 0.60, 0.50},                           // tuned
-      {0.86, 0.36, 0.22, 0.26, 0.20, 0.12},                           // with predicted momentum
+      {0.0, 1.40, 0.36, 0.42, 0.62, 0.46, 0.32, 0.24, 0.16, 0.12},     // second formulation, Gear's
+      {0.0, 0.24, 0.32, 0.44, 0.60, 0.44, 0.32, 0.22, 0.16, 0.12},     // with c0 of velocities
+      {2.00, 1.04, 0.90, 0.54, 0.70, 0.66, 0.60, 0.56, 0.60, 0.50},    // tuned
+      {2.00, 1.04, 0.96, 0.54, 0.70, 0.66, 0.60, 0.56, 0.60, 0.50},    // with any_norm()
+      {1.00, 0.92, 0.28, 0.34, 0.24, 0.12},                            // first formulation, Gear's
+      {0.72, 0.42, 0.22, 0.10, 0.04, 0.02},                            // with predicted momentum
+      {1.48, 0.86, 0.64, 0.60, 0.60, 0.50},                            // tuned
+      {0.86, 0.36, 0.22, 0.26, 0.20, 0.12},                            // with predicted momentum
   };
   const bool other = scheme.first() ? scheme.predicted_momentum
       : scheme.tuned                ? scheme.any_norm()
@@ -138,8 +135,8 @@ inline double rounded_up(double number)
 
 /* ---------------------------------------------------------------------- */
 
-/// Forces without derivatives: random ones, as of fix langevin, and the forces of contacts, of
-/// collisions and of pair styles with friction.
+/// Forces without derivatives: random ones, as of fix langevin or a DPD fluid, and those of
+/// contacts and of pair styles with friction alone.
 enum class Noise { NONE, RANDOM, DISSIPATIVE };
 
 /// sum d_k^2 of the center of mass, with these coefficients.
@@ -165,24 +162,14 @@ inline double noise_gain(const Scheme &scheme)
   return noise_gain(scheme, CorrectorCoefficients(scheme));
 }
 
-/// Values that do not cause heating with Gear's coefficients (tests/lammps/test_other_fixes.py);
-/// four values follow any friction up to half of a momentum in a step.
-inline int most_with_noise(const Scheme &scheme, Noise noise)
-{
-  if (noise == Noise::NONE) return MAX_VALUES;
-  if (noise == Noise::DISSIPATIVE) return scheme.first() ? 3 : 4;
-  return scheme.first() ? 4 : 6;
-}
-
-/// False if such forces heat bodies more than with the largest of these numbers.
+/// False if such forces heat or cool bodies.  With friction alone four of Gear's values follow any
+/// part up to half of a momentum in a step.  With random forces only velocity Verlet gives bodies
+/// the temperature of the forces, as it does for atoms; formulation first has no such method.
 inline bool suits_noise(const Scheme &scheme, Noise noise)
 {
-  const int most = most_with_noise(scheme, noise);
-  if (!scheme.tuned) return scheme.values() <= most;
-  Scheme limit = scheme;
-  limit.tuned = false;
-  limit.rows = most;
-  return noise == Noise::NONE || noise_gain(scheme) <= 1.001 * noise_gain(limit);
+  if (noise == Noise::NONE || is_verlet(scheme)) return true;
+  if (noise == Noise::RANDOM && !scheme.first()) return false;
+  return !scheme.tuned && scheme.values() <= (scheme.first() ? 3 : 4);
 }
 
 using RowMap = std::array<std::array<double, MAX_VALUES>, MAX_VALUES>;
@@ -202,52 +189,6 @@ inline double largest_of(const RowMap &a, int n)
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) largest = std::max(largest, std::fabs(a[i][j]));
   return std::isfinite(largest) ? largest : std::numeric_limits<double>::infinity();
-}
-
-/// The map of the rows of a momentum in a step with a friction that removes this part of the
-/// predicted momentum.  The first row is row order - 1 of a history.
-inline RowMap map_of_friction(const Scheme &scheme, double part)
-{
-  const CorrectorCoefficients c(scheme);
-  const int n = scheme.values(), order = scheme.first() ? 1 : 2;
-  RowMap map = {};
-  for (int column = order - 1; column < n; ++column) {
-    double rows[MAX_VALUES] = {};
-    rows[column] = 1.0;
-    Nordsieck<1>::predict(rows, n);
-    const double residual = -part / order * rows[order - 1] - rows[order];
-    Nordsieck<1>::correct<1>(rows, n, c.driven.data(), 0, &residual);
-    for (int j = order - 1; j < n; ++j) map[j + 1 - order][column + 1 - order] = rows[j];
-  }
-  return map;
-}
-
-/// The mean square of a momentum driven by random kicks under such a friction, relative to its
-/// exact value: 1 if the method is accurate.  It is also the ratio of the temperature of the bodies
-/// to the temperature of random forces.  Infinite if momenta grow.  Each iteration doubles the
-/// number of steps in the sum.
-inline double friction_response(const Scheme &scheme, double part)
-{
-  constexpr int DOUBLINGS = 40;
-  constexpr double LOST = 1.0e6, FADED = 1.0e-10, MOST = 1.0e30;    // rows grow before they decay
-  const CorrectorCoefficients c(scheme);
-  const int order = scheme.first() ? 1 : 2, n = scheme.values() + 1 - order;
-  RowMap map = map_of_friction(scheme, part), sum = {};
-  for (int i = 0; i < n; ++i)    // rows after the kick
-    for (int j = 0; j < n; ++j)
-      sum[i][j] = c.driven[i + order - 1] * c.driven[j + order - 1] / (order * order);
-  for (int k = 0; k < DOUBLINGS && largest_of(map, n) > FADED; ++k) {
-    RowMap turned = {};
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) turned[i][j] = map[j][i];
-    const RowMap later = product(product(map, sum, n), turned, n);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) sum[i][j] += later[i][j];
-    map = product(map, map, n);
-    if (!(part * sum[0][0] < LOST) || !(largest_of(map, n) < MOST))
-      return std::numeric_limits<double>::infinity();
-  }
-  return 2.0 * part * sum[0][0];
 }
 
 /* ---------------------------------------------------------------------- */

@@ -162,10 +162,7 @@ void Motion::begin_steps(const Fleet &fleet, double **f, double **torque)
     }
   }
   start_together(full, needed);
-  for (const auto &one : fleet.members) {
-    one.motion->warn_of_langevin();
-    one.motion->warn_of_single_pass();
-  }
+  for (const auto &one : fleet.members) one.motion->warn_of_single_pass();
 }
 
 void Motion::start_together(const std::vector<Motion *> &full, const std::vector<bool> &needed)
@@ -279,7 +276,8 @@ double Motion::last_error() const
   return largest;
 }
 
-/// True if histories have to start; rank 0 prints the reason if they start again.
+/// True if histories have to start; rank 0 prints the reason if they start again.  Velocity Verlet
+/// continues with the present forces, as fixes of LAMMPS do, so that the total momentum is kept.
 bool Motion::has_to_start(double **f)
 {
   const char *reason = step.started ? reason_to_start_anew(f) : nullptr;
@@ -288,6 +286,11 @@ bool Motion::has_to_start(double **f)
   const bool needs = !step.started || reason;
   movers = present_movers();
   if (needs) step.check_loads(f);
+  for (int ibody = 0; ibody < bodies.nmoved() && !needs && is_verlet(step.scheme()); ++ibody) {
+    project_norm(bodies.change_state(ibody).q);
+    seed_body(bodies, ibody, scaled_of(bodies, step.coupling.get(), ibody), step.acting(ibody),
+              step.scheme(), step.length(), 3);
+  }
   return needs;
 }
 

@@ -111,14 +111,13 @@ class Motion : protected Pointers {
   Vibrations vibrations;
   double advised_step = HUGE_VAL;          ///< by the last warning about vibrations
   std::optional<ChoiceOfValues> chosen;    ///< input to the choice of a start that has not ended
-  bool warned_pass = false, warned_values = false, warned_langevin = false;
+  bool warned_pass = false, warned_values = false;
   Scheme foresee_scheme(const MotionSums &here) const;
   Scheme choose_scheme(const MotionSums &here);
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
   void warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins);
   void warn_of_values(const ChoiceOfValues &scene);
   void warn_of_single_pass();
-  void warn_of_langevin();
   const char *another_scheme_suits();
   std::string words_of_scheme() const;
   /// True unless start zero is given: a start determines as many derivatives as it can.

@@ -5,7 +5,6 @@
 
 #include "gear_quat_motion.h"
 
-#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
 
@@ -91,7 +90,10 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
                               : "because there are no bodies yet";
   const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
   utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
-                 other_corrector ? " and corrector gear" : "", why);
+                 is_verlet(choice.scheme) ? " (velocity Verlet)"
+                     : other_corrector    ? " and corrector gear"
+                                          : "",
+                 why);
 }
 
 /// Warns once, and again if only a much shorter step is short enough.
@@ -165,36 +167,6 @@ void Motion::warn_of_single_pass()
                    fix->id, scheme.values());
 }
 
-/// Warns once if bodies would not have the temperature of fix langevin within half a percent, and
-/// ends the run if they would miss it by a tenth.  Collective.
-void Motion::warn_of_langevin()
-{
-  constexpr double ACCURATE = 0.005, WRONG = 0.1, SHORTER_PART = 0.95;
-  if (warned_langevin || step.tolerance) return;
-  for (const auto *other : modify->get_fix_by_style("^langevin$")) {
-    const double damp = damping_time(other), size = std::fabs(step.length());
-    if (!(damp > 0.0) || !shared_atom(lmp, ownership, other)) continue;
-    const auto warmth = [this](double part) {
-      return friction_response(step.scheme(), part);
-    };
-    double part = size / damp;
-    const double found = warmth(part);
-    if (std::fabs(found - 1.0) <= ACCURATE) continue;
-    while (!(std::fabs(warmth(part) - 1.0) <= ACCURATE)) part *= SHORTER_PART;
-    const std::string text =
-        fmt::format("Fix gear/quat {}: {} takes {:.2g} of a momentum in a step, and bodies with {} "
-                    "values would {}; "
-                    "use a time step of {:g} or shorter, or a damp of {:g} or longer",
-                    fix->id, name_of(other), size / damp, step.scheme().values(),
-                    std::isfinite(found) ? fmt::format("have {:.3g} of its temperature", found)
-                                         : "gain energy without bound",
-                    rounded_down(part * damp), rounded_up(size / part));
-    if (!(std::fabs(found - 1.0) <= WRONG)) error->all(FLERR, text);
-    warned_langevin = true;
-    if (comm->me == 0) error->warning(FLERR, text);
-  }
-}
-
 /// Returns the reason to start histories again with another number of values, null for none.
 /// Reasons are a change of the step, of a rotation or of forces.  Vibrations are from the last
 /// start.  Collective.
@@ -229,8 +201,9 @@ void Motion::adopt_scheme(Fields &file)
     return;
   if (args.automatic_values) scheme.rows = (int) of_file.values;
   if (scheme.values() != of_file.values) return;
-  if (!args.states("corrector")) scheme.tuned = of_file.tuned != 0.0;
-  if (scheme.tuned && !has_tuned(scheme.formulation, scheme.values())) return;
+  const bool verlet = !scheme.first() && scheme.values() == VERLET;
+  if (verlet || !args.states("corrector")) scheme.tuned = of_file.tuned != 0.0;
+  if (scheme.tuned && !verlet && !has_tuned(scheme.formulation, scheme.values())) return;
   if (!args.states("project")) scheme.projection = (Projection) (int) of_file.projection;
   if (!args.states("passes")) scheme.passes = (int) of_file.passes;
   step.set_scheme(scheme);

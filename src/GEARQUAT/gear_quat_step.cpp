@@ -15,6 +15,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 #include <utility>
@@ -129,16 +130,25 @@ void Step::predict(double **f)
     const BodyState &state = bodies.state_of(ibody);
     if (!tolerance && !blowup.limits.keep_velocities(state)) blowup.stop(ibody, state, h, f);
   };
+  constexpr int WIDTH = Scheme::SECOND_WIDTH;    // with velocities of half a step before
+  std::array<double, 2 * WIDTH> half;
+  const bool verlet = is_verlet(scheme());
+  const auto seen = [&half, verlet](const double *rows) {
+    if (!verlet) return rows;
+    std::copy_n(rows, 2 * WIDTH, half.begin());
+    for (int i = WIDTH; i < 2 * WIDTH; ++i) half[i] -= rows[i + WIDTH];
+    return (const double *) half.data();
+  };
   for (const int ibody : bodies.points) {
     double *rows = bodies.history(ibody);
     integrator->predict_center(rows);
-    integrator->center_state(bodies.rigid_of(ibody), rows, bodies.change_state(ibody));
+    integrator->center_state(bodies.rigid_of(ibody), seen(rows), bodies.change_state(ibody));
     check(ibody);
   }
   for (const int ibody : bodies.tops) {
     double *rows = bodies.history(ibody);
     integrator->predict(rows);
-    integrator->body_state(bodies.rigid_of(ibody), rows, bodies.change_state(ibody),
+    integrator->body_state(bodies.rigid_of(ibody), seen(rows), bodies.change_state(ibody),
                            bodies.change_frame(ibody));
     check(ibody);
   }

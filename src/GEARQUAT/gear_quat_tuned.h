@@ -224,6 +224,14 @@ inline const TunedSet *tuned_set(const Scheme &scheme, Columns columns)
   return tuned_set(scheme.formulation, scheme.values(), columns, scheme.any_norm());
 }
 
+/// Three values have the coefficients of velocity Verlet, c = (0, 1, 1).  Where velocities are read
+/// with the forces, they are then those of half a step before.
+constexpr int VERLET = 3;
+inline bool is_verlet(const Scheme &scheme)
+{
+  return !scheme.first() && scheme.tuned && scheme.values() == VERLET;
+}
+
 /// True if there are tuned coefficients for this number of values.
 inline bool has_tuned(Formulation formulation, int values)
 {
@@ -272,7 +280,10 @@ struct CorrectorCoefficients {
   /// Returns the weight of the residual in the local error.
   static double fill(const Scheme &scheme, Columns columns, Array &c)
   {
-    return scheme.tuned ? fill_tuned(scheme, columns, c) : fill_gear(scheme, c);
+    if (!is_verlet(scheme))
+      return scheme.tuned ? fill_tuned(scheme, columns, c) : fill_gear(scheme, c);
+    c[1] = c[2] = 1.0;
+    return 1.0 / 3.0;
   }
 
   static double fill_gear(const Scheme &scheme, Array &c)

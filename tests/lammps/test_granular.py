@@ -125,7 +125,7 @@ def test_walls_that_see_one_fix_only_are_named(lmp_wheel, second, told):
 def test_contacts_suit_few_values(lmp_wheel, style, wall, source, words, many):
     fix = f"fix move all gear/quat group 2 low high {words}"
     result = lmp_wheel.succeed(deck(fix, 1e-5, wall=wall, style=style, steps=1))
-    told = f"forces of {source} are dissipative, and 9 values turn them into heat; leave out keywords values and"
+    told = f"forces of {source} are dissipative, and 9 values cannot follow them; leave out keywords values and"
     assert (told in result.words) == (many and source is not None)
     chosen = f"4 values and corrector gear, because forces of {source} are dissipative"
     assert (chosen in result.words) == (words == "" and source is not None)

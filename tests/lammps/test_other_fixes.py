@@ -287,10 +287,10 @@ def test_values_that_random_forces_heat(lmp_wheel, words):
     """The warning advises the defaults, which cause none."""
     after = "fix t all langevin 1 1 1 4711\nrun 1"
     told = lmp_wheel.succeed(two_molecules(f"molecule {words}", after=after)).words
-    line = r"forces of fix (.*) are random, and \d values turn them into heat; leave out keywords values and corrector"
+    line = r"forces of fix (.*) are random, and (?:\d values|formulation first) cannot follow them; leave out keywords (?:formulation, )?values and corrector"
     assert re.search(line, told)[1] == "t (langevin)"
     assert re.search(line, (ROOT / "doc/howto/read_log.md").read_text())
-    assert "heat" not in lmp_wheel.succeed(two_molecules(after=after)).words
+    assert "cannot follow" not in lmp_wheel.succeed(two_molecules(after=after)).words
 
 
 @pytest.mark.parametrize(
@@ -344,20 +344,18 @@ run 3000
 """
 
 
-def test_few_values_suit_srd(lmp_wheel):
+def test_srd_has_few_values(lmp_wheel):
     """Collisions are forces in a single step: they cause heating with a long history, and no heating with a short
     history."""
     lines = []
     for n, (x, y) in enumerate([(2, 2), (5.7, 2.1), (2.1, 5.8), (6, 6)]):
         lines += [f"create_atoms 1 single {x} {y} 0", f"create_atoms 1 single {x + 1} {y} 0"]
         lines.append(f"set atom {2 * n + 1}*{2 * n + 2} mol {n + 1} diameter 1.0")
-    words = ["corrector gear values 4", "corrector gear formulation first values 3"]
-    words += ["", "formulation first", "corrector gear values 8"]
-    fixes = [*(f"gear/quat molecule {word}" for word in words), "rigid/small molecule"]
+    fixes = ["gear/quat molecule", "gear/quat molecule corrector gear values 8", "rigid/small molecule"]
     decks = [SRD.format(atoms="\n".join(lines), fix=fix) for fix in fixes]
     result = lmp_wheel.succeed(one_after_the_other(decks))
-    *few, many, rigid = (np.mean(table["Temp"][50:]) for table in result.thermo)
-    assert few == pytest.approx([rigid] * 4, rel=0.25)  # as chosen by the fix, too
+    few, many, rigid = (np.mean(table["Temp"][50:]) for table in result.thermo)
+    assert few == pytest.approx(rigid, rel=0.25)
     assert many > 2 * rigid  # the log warns of this
-    told = "forces of fix heat (srd) are dissipative, and 8 values turn them into heat; leave out keywords values and"
-    assert result.words.count("are dissipative, and") == 1 and told in result.words
+    told = "forces of fix heat (srd) are random, and 8 values cannot follow them; leave out keywords values and"
+    assert result.words.count("cannot follow") == 1 and told in result.words

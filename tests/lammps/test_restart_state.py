@@ -191,7 +191,7 @@ NOT_IN_A_FILE = {
         COMMAND: "masks",
         OTHERS: "fix args fleet bodies ownership others",
         RUN: "set_up vibrations chosen of_file",
-        MESSAGES: "advised_step warned_pass warned_values warned_langevin",
+        MESSAGES: "advised_step warned_pass warned_values",
     },
 }
 

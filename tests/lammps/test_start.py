@@ -77,7 +77,7 @@ def test_what_cannot_be_followed_is_said(lmp_tree, name, ranks):
     result, _ = field(lmp_tree, 10, 0.01, after=NOT_FOLLOWED[name], ranks=ranks)
     assert result.stdout.count(FALLBACK) == 1
     assert {"langevin": "fix l (langevin)", "time": "depends on time"}[name] in result.stdout
-    assert ("4 values, because forces of fix l (langevin) are random" in result.stdout) == (name == "langevin")
+    assert ("3 values (velocity Verlet), because forces of fix l (langevin)" in result.stdout) == (name == "langevin")
 
 
 def test_flexible_neighbours_are_not_followed(lmp_tree):

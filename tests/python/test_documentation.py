@@ -340,19 +340,6 @@ def test_growth_of_stable_steps():
         assert 0.85 * bound < max(of_n) < bound
 
 
-def test_noise_of_the_manual():
-    """Random forces: their effect with tuned sets is compared with Gear's coefficients at the limit."""
-    text = " ".join(MANUAL.split())
-    words = r"\* (\d) values \((\d) in formulation \*first\*\) with :doc:`fix langevin"
-    second, first = map(int, re.search(words, text).groups())
-    limits = (6, 4)  # most_with_noise() in gear_quat_limits.h
-    suited = {}
-    for formulation, values, limit in zip(("second", "first"), (SECOND, FIRST), limits):
-        most = 1.001 * kernel.gear(formulation, limit).noise
-        suited[formulation] = [n for n in values if kernel.tuned(formulation, n).noise <= most]
-    assert suited == {"second": [second], "first": list(range(3, first + 1))}
-
-
 def fastest(corrector):
     """Radians a step up to which a free top keeps its energy for 2000 steps."""
     steps, rate = np.arange(0.05, 1.2, 0.025), 1.24
