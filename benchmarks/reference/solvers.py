@@ -110,11 +110,12 @@ def _of_scipy(rates, span, start, method, rtol, atol):
     return solution.success, solution.message, solution.y.T
 
 
-def _solution(problem, time, method, tolerance, weights=None):
+def _solution(problem, time, method, tolerance, weights=None, most=np.inf):
     """Packed states (n, B, 13) at the steps of a method in double precision, and the evaluations.
 
     ``tolerance`` is relative to each component and to the largest of its kind (position, velocity, quaternion, angular
-    velocity), whichever is larger, or to the ``weights`` (13,) alone.
+    velocity), whichever is larger, or to the ``weights`` (13,) alone.  Raises RuntimeError if the method fails, or
+    needs more than ``most`` evaluations.
     """
     if method not in (known := (*METHODS, DDEABM, PAIR, *CVODE)):
         raise ValueError(f"the method is one of {', '.join(known)}, not {method}")
@@ -127,6 +128,8 @@ def _solution(problem, time, method, tolerance, weights=None):
     def rates(t, y):
         nonlocal evaluations
         evaluations += 1
+        if evaluations > most:
+            raise RuntimeError(f"{method} at tolerance {tolerance:g}: more than {most} evaluations")
         return double.rates(t, y.reshape(start.shape)).ravel()
 
     scale = double.scales(start) if weights is None else weights
@@ -140,9 +143,9 @@ def _solution(problem, time, method, tolerance, weights=None):
     return states.reshape(-1, *start.shape), evaluations
 
 
-def solve(problem, time, method, tolerance, weights=None):
+def solve(problem, time, method, tolerance, weights=None, most=np.inf):
     """State of a Problem at ``time`` by a method, and the evaluations; see ``_solution``."""
-    steps, evaluations = _solution(problem, time, method, tolerance, weights)
+    steps, evaluations = _solution(problem, time, method, tolerance, weights, most)
     return State.of(steps[-1]), evaluations
 
 

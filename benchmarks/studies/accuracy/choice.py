@@ -26,25 +26,27 @@ VALUES, AUTO = (5, 6, 7, 8, 9, 10, 11, 12), 0
 REFERENCE, FINER = 9, 2
 RUNS, RATIO = 14, 1.2
 
-DECK = """\
+HEAD = """\
 # {title}
 units {units}
 atom_style full
 atom_modify map array sort 0 0.0
 boundary f f f
 region box block -50 50 -50 50 -50 50
-create_box 2 box
+create_box {types} box
 {atoms}
 {forces}
 neighbor 5.0 nsq
 neigh_modify once yes exclude molecule/intra all
-if "${{values}} > 0" then 'variable words string "values ${{values}}"' else 'variable words string ""'
-fix move all gear/quat molecule compensate ${{compensate}} ${{words}}
+"""
+DECK = """\
+if "${values} > 0" then 'variable words string "values ${values}"' else 'variable words string ""'
+fix move all gear/quat molecule compensate ${compensate} ${words}
 fix_modify move energy yes
-timestep ${{dt}}
-dump poses all custom ${{steps}} ${{out}}.dump id mol type mass xu yu zu vx vy vz
+timestep ${dt}
+dump poses all custom ${steps} ${out}.dump id mol type mass xu yu zu vx vy vz
 dump_modify poses sort id format float %.17g
-run ${{steps}}
+run ${steps}
 """
 
 WATER = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (-0.3338, 0.9426, 0.0))
@@ -97,10 +99,14 @@ class Scene:
 # --- scenes ---------------------------------------------------------------------------------------
 def _atoms(random, bodies, kinds, speed, spin):
     """Commands that create ``bodies``, arrays (n, 3) of sites, with random rigid-body velocities."""
+    return atoms(bodies, kinds, ((speed * random.normal(size=3), spin * random.normal(size=3)) for _ in bodies))
+
+
+def atoms(bodies, kinds, motions):
+    """Commands that create ``bodies``, arrays (n, 3) of sites, with pairs of velocity and angular velocity."""
     lines, number = [], 0
-    for molecule, sites in enumerate(bodies, 1):
+    for molecule, (sites, (velocity, omega)) in enumerate(zip(bodies, motions), 1):
         middle = sites.mean(axis=0)
-        velocity, omega = speed * random.normal(size=3), spin * random.normal(size=3)
         for kind, place in zip(kinds, sites):
             number += 1
             v = velocity + np.cross(omega, place - middle)
@@ -129,8 +135,8 @@ def _ring(random, molecules, distance=2.85):
 
 
 def _scene(title, end, steps, units, forces, atoms):
-    text = DECK.format(title=title, units=units, atoms=atoms, forces=forces)
-    return Scene(title, end, steps, text)
+    head = HEAD.format(title=title, units=units, types=2, atoms=atoms, forces=forces)
+    return Scene(title, end, steps, head + DECK)
 
 
 def scenes():
@@ -151,8 +157,8 @@ def scenes():
     pair = [_turned(random, linear, center) for center in ((0, 0, 0), (2.5, 3.0, 0.5))]
     put("co2", "two of CO2", 1500.0, 1600, "real", CARBON_DIOXIDE, pair, (1, 2, 2), 0.002, 0.003)
     for n in (3, 5):
-        atoms = list(_ring(random, n)), (1, 2, 2), 0.002, 0.01
-        put(f"ring{n}", f"(H2O){n}", 200.0, 1600, "real", OF_WATER, *atoms)
+        rings = list(_ring(random, n)), (1, 2, 2), 0.002, 0.01
+        put(f"ring{n}", f"(H2O){n}", 200.0, 1600, "real", OF_WATER, *rings)
     centers = [2.0 * np.array(c) for c in ((1, 0, 0), (-1, 0.3, 0), (0, 1, 0.5), (0, -1, -0.4))]
     bodies = [_turned(random, TRIANGLE, center) for center in centers]
     forces = UNIT_MASSES + "\npair_style gauss 90.0\npair_coeff * * -3.0 0.4\n" + TRAP

@@ -8,15 +8,17 @@ import numpy as np
 from benchmarks.engine import Curve, Panel, draw
 from benchmarks.engine.methods import looks
 from benchmarks.engine.panels import RECONSTRUCTED
-from benchmarks.reference.solvers import METHODS as SOLVERS
+from benchmarks.reference.multistep import LABEL as MULTISTEP
+from benchmarks.reference.solvers import DDEABM, PAIR
 from gearquat_analysis.style import COLOR, STYLE
 
 from . import plan, tables
-from .evaluate import fitted_order, price
+from .evaluate import cost_of, fitted_order, price
+from .peers import OF_TOP
 
 #: other methods that the pictures show, and their colors
-PEER = {"DOP853": "#009e73", "LSODA": "#cc79a7", "RKN4, 6 stages": "#e69f00"}
-PEER |= {"RKN6, 11 stages": "#9467bd", "Kahan–Li 8, 17 stages": "#8c564b"}
+PEER = {DDEABM: "#009e73", MULTISTEP: "#9467bd", PAIR: "#e69f00", "CVODE Adams": "#8c564b"}
+PEER |= {"DOP853": "#56b4e9", "LSODA": "#cc79a7"}
 AXIS = {"seconds": "wall time of the run, ms", "evaluations": "force evaluations, start included"}
 #: smallest value in a logarithmic panel
 TINY = 1e-17
@@ -28,6 +30,16 @@ def points(results, scene, method, unit, quantity):
     y = results.column(scene, method, quantity)
     good = np.isfinite(x) & np.isfinite(y)
     return x[good], np.maximum(y[good], TINY)
+
+
+def peer_points(results, scene, name, target=1e-6):
+    """Evaluations and errors of another method with the weights that are best for one error."""
+
+    def cost(curve):
+        found = cost_of(*curve, target)
+        return found.value if found else np.inf
+
+    return min(results.peer(scene, name), key=cost, default=np.empty((2, 0)))
 
 
 # --- the main picture -----------------------------------------------------------------------------
@@ -72,7 +84,7 @@ def draw_main(path, results):
         for target in tables.TARGETS:
             _arrow(axes[0], results, target)
         for (name, color), height in zip(PEER.items(), np.arange(0.94, 0, -0.055)):
-            axes[1].plot(*results.peer("case1", name), "-.", color=color, linewidth=1)
+            axes[1].plot(*peer_points(results, "case1", name), "-.", color=color, linewidth=1)
             look = {"color": color, "transform": axes[1].transAxes, "fontsize": 9, "ha": "right"}
             axes[1].text(0.98, height, name, **look)
         axes[0].set_ylabel("error of the center of mass at the end")
@@ -125,7 +137,7 @@ def top_panels(results, scene):
         return Panel(title, AXIS[unit], "", curves, "xy", legend=False)
 
     others = tuple(
-        Curve(name, *results.peer(scene.key, name), PEER[name], "-.", "^") for name in SOLVERS
+        Curve(name, *peer_points(results, scene.key, name), PEER[name], "-.", "^") for name in OF_TOP
     )
     orientation = _curves(results, scene, "evaluations", "orientation", label=True)
     orientation += others + _fits(results, scene)

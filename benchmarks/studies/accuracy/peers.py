@@ -1,18 +1,20 @@
 """The methods that the fix is compared with, counted in evaluations of the forces.
 
-These are SciPy's solvers, splittings with exact free rotation, fix rigid/nve/small, and compositions of its steps.
-LAMMPS runs the compositions itself: a step may be negative, and ``run 1 pre no`` continues the last run.
-The composition of order 4 is from M. Suzuki, Phys. Lett. A 146, 319 (1990).
+These are solvers that control their steps, splittings with exact free rotation, a symmetric multistep method, fix
+rigid/nve/small, and compositions of its steps.  A method that controls its steps runs with several weights of the kinds
+of variables, and the best ones count.  LAMMPS runs the compositions itself: a step may be negative, and ``run 1 pre no``
+continues the last run.  The composition of order 4 is from M. Suzuki, Phys. Lett. A 146, 319 (1990).
 """
 
+import warnings
 from functools import partial
 
 import numpy as np
 
 from benchmarks.engine.session import RunError
 from benchmarks.engine.sites import pose_errors
-from benchmarks.reference import solvers, splittings
-from benchmarks.reference.splittings import KAHAN_LI, SPLITTINGS, symmetric
+from benchmarks.reference import multistep, solvers, splittings
+from benchmarks.reference.splittings import KAHAN_LI, NEARLY_FREE, SPLITTINGS, symmetric
 
 from . import plan
 
@@ -22,46 +24,143 @@ COMPOSITIONS = {
     f"{plan.RIGID_NVE.label} composed, order 4": symmetric(SUZUKI, SUZUKI, even=False),
     f"{plan.RIGID_NVE.label} composed, order 8": KAHAN_LI,
 }
-NAMES = (*solvers.METHODS, *(own.label for own in SPLITTINGS), *COMPOSITIONS)
+CVODE = "CVODE Adams"
+ADAPTIVE = (solvers.DDEABM, CVODE, solvers.PAIR, *solvers.METHODS)
+SPLIT = {own.label: own for own in (*NEARLY_FREE, *SPLITTINGS)}
+#: methods that are also run from the held-out starts, where forces are strong, and in the other scenes of rivals.py
+OF_STARTS = (*ADAPTIVE, multistep.LABEL)
+STRONGEST = (*OF_STARTS, *list(SPLIT)[:4])
+NAMES = (*ADAPTIVE, multistep.LABEL, *SPLIT, *COMPOSITIONS)
+#: methods that are run with the free top
+OF_TOP = solvers.DDEABM, "DOP853"
+#: weights of the kinds of variables: the error of a length of 1 weighs the same as that of an angle times the radius of
+#: gyration, and as that of a rate over a part of the run; pairs of angle and part, of which most scenes have the first FEW
+WEIGHTS = (1.0, 0.1), (0.1, 0.01), (0.1, 0.1), (1.0, 0.01)
+FEW = 2
+#: a curve ends at this error, or at this number of evaluations
+STOP, MOST = 2e-11, 12_000
+#: first steps, as parts of the run, and measures of the error of the fix under a tolerance
+FIRST_STEPS, MEASURES = (1 / 30, 1 / 1000), ("length", "energy")
 
 
-def _composed(session, scene, reference, parts, numbers):
-    """WorkPoints of a composition, one for each of the ``numbers`` of steps with which LAMMPS reaches the end."""
-    points = []
-    for steps in numbers:
-        variables = plan.Run(scene, plan.RIGID_NVE, steps).variables(False)
-        evaluations = 1 + steps * len(parts)
+# --- one run --------------------------------------------------------------------------------------
+def _rms(shifts):
+    """Root mean square of vectors (n, 3); infinite if one is not finite."""
+    found = float(np.sqrt((shifts**2).sum(axis=1).mean()))
+    return found if np.isfinite(found) else np.inf
+
+
+def errors_of_state(reference, state):
+    """Errors of a State: centers, orientations, sites."""
+    problem, state = reference.problem, state.astype(reference.problem.dtype)
+    errors = solvers.state_errors(problem, reference.state, state)
+    sites = problem.site_positions(state) - problem.site_positions(reference.state)
+    return errors.rms_center, errors.rms_angle, _rms(sites)
+
+
+def errors_of_outcome(reference, outcome):
+    """The same of an Outcome of LAMMPS."""
+    places, body = reference.positions(outcome), outcome.molecules > 0
+    errors = pose_errors(outcome.masses, outcome.molecules, outcome.before, outcome.after, places)
+    return *errors, _rms((outcome.after - places)[body])
+
+
+def curve(settings, run):
+    """Rows (setting, evaluations, errors of centers, orientations and sites) of ``run(setting)``, which returns
+    evaluations and errors.  A lost run has infinite errors; the list ends at STOP and at MOST."""
+    rows = []
+    for setting in settings:
         try:
-            found = session.run(scene.deck, variables, "composed", 1e-3 * evaluations, parts)
-        except RunError:
-            continue
-        places = found.before, found.after, reference.positions(found)
-        errors = pose_errors(found.masses, found.molecules, *places)
-        points.append(solvers.WorkPoint(steps, evaluations, solvers.Errors(*np.reshape(errors, (2, 1)), np.nan)))
-    return points
+            with warnings.catch_warnings(), np.errstate(all="ignore"):
+                warnings.simplefilter("ignore")
+                evaluations, errors = run(setting)
+        except (RunError, RuntimeError, ValueError):
+            evaluations, errors = np.nan, [np.inf] * 3
+        rows.append((setting, evaluations, *(e if np.isfinite(e) else np.inf for e in errors)))
+        if max(errors) < STOP or evaluations > MOST:
+            break
+    return rows
 
 
-def _jobs(session, scene, reference):
-    """(name, tolerances or numbers of steps, function from a list of these to WorkPoints)."""
-    task = reference.problem, scene.end, reference.state
-    for name in solvers.METHODS:
-        for tolerance in scene.tolerances:
-            yield name, tolerance, partial(solvers.work_precision, *task, name)
-    for evaluations in scene.evaluations:
-        for own in SPLITTINGS:
-            work = partial(splittings.work_precision, *task, own)
-            yield own.label, round(evaluations / own.stages), work
-        for name, parts in COMPOSITIONS.items():
-            work = partial(_composed, session, scene, reference, parts)
-            yield name, round(evaluations / len(parts)), work
+# --- the fix --------------------------------------------------------------------------------------
+def fixed(session, scene, reference):
+    """Curve of the fix without keywords over the numbers of steps of a scene."""
+
+    def run(steps):
+        outcome = plan.Run(scene, plan.DEFAULT, steps).perform(session)
+        return 1 + outcome.start + steps, errors_of_outcome(reference, outcome)
+
+    return curve(scene.gear_blocks, run)
 
 
-def measure(lab, session, scene, reference):
-    """Name -> list of (tolerance or number of steps, evaluations, error of position, of orientation)."""
-    jobs, found = list(_jobs(session, scene, reference)), {}
-    for name, setting, work in jobs:
-        for point in work([setting]):
-            errors = point.errors.rms_center, point.errors.rms_angle
-            found.setdefault(name, []).append((setting, point.evaluations, *errors))
-        lab.advance(1 / len(jobs))
+def controlled(session, scene, reference):
+    """Curves of the fix with keyword tolerance, for each first step and each measure of the error."""
+
+    def run(eps, first, measure):
+        variables = dict(scene.variables) | {"dt": f"{first * scene.end:.17g}", "steps": 10**6, "every": 1}
+        variables |= {"tolerance": f"{eps:.17g}", "measure": f"{measure} every/time {scene.end:.17g}"}
+        variables |= {"until": f"{scene.end:.17g}", "more": "f_move[16]"}
+        outcome = session.run(scene.deck, variables, f"{scene.key}_tolerance", 1.0)
+        steps, repeated = (outcome.thermo[column][-1] for column in ("Step", "f_move[16]"))
+        return int(1 + outcome.start + steps + repeated), errors_of_outcome(reference, outcome)
+
+    work = [partial(run, first=first, measure=measure) for first in FIRST_STEPS for measure in MEASURES]
+    return [curve(scene.tolerances, one) for one in work]
+
+
+# --- the others -----------------------------------------------------------------------------------
+def _adaptive(scene, reference, name, quick):
+    """Curves of a method that controls its steps."""
+    problem, bodies = reference.problem, reference.problem.bodies
+    size = float(np.sqrt((bodies.moments.max(axis=1) / bodies.masses).max()))
+
+    def run(tolerance, weights):
+        state, evaluations = solvers.solve(problem, scene.end, name, tolerance, weights, MOST)
+        return evaluations, errors_of_state(reference, state)
+
+    for angle, part in WEIGHTS[: 1 if quick else len(WEIGHTS) if scene.key == "case1" else FEW]:
+        weights = solvers.weights(1.0, angle / size, part * scene.end)
+        yield curve(scene.tolerances, partial(run, weights=weights))
+
+
+def _equal_steps(scene, reference, name):
+    """Curve of a splitting, or of the multistep method."""
+
+    def run(steps):
+        task = reference.problem, scene.end
+        if name == multistep.LABEL:
+            state, evaluations = multistep.solve(*task, steps)
+        else:
+            ((state, evaluations),) = splittings.states(*task, SPLIT[name], steps)
+        return evaluations, errors_of_state(reference, state)
+
+    stages = SPLIT[name].stages if name in SPLIT else 1
+    return curve([round(evaluations / stages) for evaluations in scene.evaluations], run)
+
+
+def _composed(session, scene, reference, parts):
+    """Curve of a composition."""
+
+    def run(steps):
+        variables, evaluations = plan.Run(scene, plan.RIGID_NVE, steps).variables(False), 1 + steps * len(parts)
+        outcome = session.run(scene.deck, variables, "composed", 1e-3 * evaluations, parts)
+        return evaluations, errors_of_outcome(reference, outcome)
+
+    return curve([round(evaluations / len(parts)) for evaluations in scene.evaluations], run)
+
+
+def measure(lab, session, scene, reference, names=NAMES):
+    """Name -> curves, lists of (tolerance or number of steps, evaluations, errors of centers, orientations, sites)."""
+    skipped = {CVODE} - set(solvers.available())
+    skipped |= set() if scene.tolerances else set(ADAPTIVE)
+    skipped |= set() if scene.evaluations else set(NAMES) - set(ADAPTIVE)
+    names, found = [name for name in names if name not in skipped], {}
+    for name in names:
+        if name in ADAPTIVE:
+            found[name] = list(_adaptive(scene, reference, name, lab.quick))
+        elif name in COMPOSITIONS:
+            found[name] = [_composed(session, scene, reference, COMPOSITIONS[name])]
+        else:
+            found[name] = [_equal_steps(scene, reference, name)]
+        lab.advance(1 / len(names))
     return found

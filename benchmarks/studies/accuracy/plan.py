@@ -7,6 +7,7 @@ A method is a set of variables of the decks in ``examples``, so that every run c
 import itertools
 from dataclasses import dataclass, replace
 from functools import cache
+from pathlib import Path
 
 from benchmarks.engine import decks
 from benchmarks.engine.methods import (
@@ -20,6 +21,8 @@ from benchmarks.engine.methods import (
 )
 
 PASSES = 1, DEFAULT_PASSES
+#: columns of the errors in the rows of peers.py
+COLUMNS = {"position": 2, "orientation": 3, "sites": 4}
 #: columns in the log of every scene (examples/common/in.motion), and an additional one
 TOTAL, NORM, TANGENCY = "v_total", "v_qerror", "f_move[4]"
 VALUES = {"second": range(4, 13), "first": range(3, 9)}
@@ -79,11 +82,11 @@ class Scene:
     * ``end``: end of every run; ``samples``: number of samples, which divides the number of steps
     * ``gear_blocks``, ``rigid_blocks``: steps between two samples, ascending; ``far``: the same for
       fix rigid/nve/small, if different
-    * ``measure``: the error for which costs are given, position or orientation
+    * ``measure``: the error for which costs are given: position, orientation or sites
     * ``time``: unit of time, "" for reduced units
     * ``cost``: approximate seconds per step; ``minutes``: approximate duration of all runs
-    * ``tolerances`` of SciPy's solvers; ``evaluations``: approximate numbers for the splittings
-    * ``smooth``: True if forces have no jump
+    * ``tolerances`` of other solvers; ``evaluations``: approximate numbers for methods with equal steps
+    * ``smooth``: True if forces have no jump; ``path`` of the deck, if it is not one of the examples
     """
 
     key: str
@@ -102,11 +105,12 @@ class Scene:
     smooth: bool = True
     far: tuple = ()
     variables: tuple = ()
+    path: str = ""
 
     @property
     def deck(self):
         """Path of the input script."""
-        return decks.deck(self.key.partition("-")[0])
+        return Path(self.path) if self.path else decks.deck(self.key.partition("-")[0])
 
     @property
     def heading(self):
@@ -176,7 +180,7 @@ def _one_body(quick, **facts):
         blocks, rigid_blocks = geometric(8, 1000, 2 ** (1 / 3)), geometric(16, 1 << 14, 2.0)
         far = geometric(16, 1 << 17, 2.0)  # down to the round-off error
     facts |= {"gear_blocks": blocks, "rigid_blocks": rigid_blocks, "far": far}
-    return Scene(tolerances=half_decades(4, 12) if quick else half_decades(2, 13), **facts)
+    return Scene(tolerances=half_decades(4, 12) if quick else half_decades(1, 14), **facts)
 
 
 def _water(quick, forces, **facts):

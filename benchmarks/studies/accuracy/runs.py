@@ -11,7 +11,7 @@ from benchmarks.engine.sites import pose_errors
 from benchmarks.reference import FreeField, paper_problem, reference_state
 from benchmarks.reference.lammps_forces import deck_problem
 
-from . import peers, plan
+from . import evaluate, peers, plan
 
 #: smallest number of timings of every run
 ROUNDS, QUICK_ROUNDS = 5, 2
@@ -72,7 +72,8 @@ class Results:
     """All measurements.
 
     * ``runs``: list of Point
-    * ``peers``: (scene, name) -> list of (tolerance or number of steps, evaluations, error of position, of orientation)
+    * ``peers``: (scene, name) -> curves of peers.py; in test case 1 also of the fix with keyword tolerance
+    * ``rivals``: scene -> (column, curves) for the scenes of rivals.py
     * ``limits``: (scene, method) -> largest usable step, 0 if none was found
     * ``orders``: (formulation, N) and ``rounding``: (formulation, True if compensated) -> list of (step, error of
       position) in test case 1
@@ -90,6 +91,7 @@ class Results:
     modify: dict = field(default_factory=dict)
     heldout: dict = field(default_factory=dict)
     choice: dict = field(default_factory=dict)
+    rivals: dict = field(default_factory=dict)
 
     @property
     def scenes(self):
@@ -112,10 +114,9 @@ class Results:
         return self.column(scene, method, "dt"), self.column(scene, method, measure)
 
     def peer(self, scene, name):
-        """Evaluations and errors (the scene's measure) of one of ``peers.NAMES``, two arrays (n,)."""
-        column = 2 if plan.scenes(self.quick)[scene].measure == "position" else 3
-        table = np.array(sorted(self.peers.get((scene, name), []), key=lambda row: row[1]))
-        return table.reshape(-1, 4)[:, [1, column]].T
+        """Curves of one of ``peers.NAMES``: a list of arrays (2, n) of evaluations and errors (the scene's measure)."""
+        column = plan.COLUMNS[plan.scenes(self.quick)[scene].measure]
+        return evaluate.curves(self.peers.get((scene, name), []), column)
 
 
 # --- references -----------------------------------------------------------------------------------
@@ -284,8 +285,9 @@ def run_scene(lab, session, results, scene, reference):
         times = time_all(lab, session, outcomes)
     results.runs += [point_of(run, *own, times.get(run)) for run, own in outcomes.items()]
     with lab.share(0.3):
-        for name, rows in peers.measure(lab, session, scene, reference).items():
-            results.peers[scene.key, name] = rows
+        names = peers.NAMES if scene.key == "case1" else peers.OF_TOP
+        for name, curves in peers.measure(lab, session, scene, reference, names).items():
+            results.peers[scene.key, name] = curves
 
 
 def run_further(lab, session, results, scene, reference):
@@ -314,5 +316,6 @@ def measure(lab, session):
             reference = reference_of(scene, lab.out / "reference", session)
             run_scene(lab, session, results, scene, reference)
             if scene.key == "case1":
+                results.peers[scene.key, "tolerance"] = peers.controlled(session, scene, reference)
                 run_further(lab, session, results, scene, reference)
     return results

@@ -1,0 +1,148 @@
+"""Scenes in which the fix is compared with the strongest of the other methods, apart from test case 1.
+
+Two are in the cage of test case 1: in its middle the forces are weak, and the body turns there slowly or fast.  Two
+molecules of water vibrate about a hydrogen bond, and a charge passes a fixed one at a small distance, where only methods
+that control their steps are of use.  The ten starts are those of heldout.py.
+"""
+
+from dataclasses import replace
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from benchmarks.engine.decks import EXAMPLES
+from benchmarks.reference import Cage, Problem, State, paper_problem, reference_state
+from benchmarks.reference.lammps_forces import deck_problem
+from benchmarks.reference.paper import SITE_MASSES, SITES
+
+from . import choice, heldout, peers, plan
+from .runs import Reference
+
+#: angular velocity in the weak field, along the principal axes, and the factor of the fast rotation
+OMEGA, FASTER = (0.2, 0.3, 0.12), 8
+#: angle between the hydrogen bond and the first molecule's axis, distance of the molecules in angstrom, units of time
+HALF, APART, FS = 109.47 / 2, 2.9, 48.88821291
+#: distance at which the charge would pass the fixed one without forces
+PASSES = 0.02
+#: tolerance of the reference there; below it, rounding ends the extrapolation
+TIGHT = 1e-14
+#: keys of the fix, beside the names of the other methods
+FIXED, TOLERANCE = "no keyword", "`tolerance`"
+START = "start"
+
+ENDING = """\
+group body molecule > 0
+variable dt index 1
+variable steps index 1
+variable every index 1
+variable out index out
+include {}
+"""
+
+
+class Center(Cage):
+    """A fixed charge of 1 at the origin, and the charges of test case 1 without Lennard-Jones potentials."""
+
+    EPSILON = 0
+
+    def __init__(self, dtype=np.longdouble):
+        super().__init__(dtype)
+        self.positions, self.charges = np.zeros((1, 3), dtype=dtype), np.ones(1, dtype=dtype)
+
+    def astype(self, dtype):
+        """The charge in another float type."""
+        return Center(dtype)
+
+
+# --- scenes ---------------------------------------------------------------------------------------
+def _in_the_middle(omega):
+    """The body of test case 1 in the middle of the cage."""
+    base = paper_problem(1)
+    numbers = (0, 0, 0), (0.02, -0.01, 0.015)
+    center, velocity = (np.array([row], dtype=base.dtype) for row in numbers)
+    start = State(center, velocity, base.start.q, np.array([omega], dtype=base.dtype))
+    return Problem("middle of the cage", base.bodies, base.field, start)
+
+
+def _deck(folder, name, units, types, forces, *bodies_kinds_motions):
+    """Path of a deck that it writes, with the methods and outputs of examples."""
+    path, atoms = folder / f"in.{name}", choice.atoms(*bodies_kinds_motions)
+    head = choice.HEAD.format(title=name, units=units, types=types, atoms=atoms, forces=forces)
+    path.write_text(head + ENDING.format(EXAMPLES / "common" / "in.motion"))
+    return str(path)
+
+
+def _pair(folder):
+    """Deck of two molecules of water, the first a donor."""
+    s, c = np.sin(np.radians(HALF)), np.cos(np.radians(HALF))
+    sites = np.array([(0, 0, 0), (s, c, 0), (-s, c, 0)])
+    turns = Rotation.from_euler("z", HALF - 90, degrees=True), Rotation.from_euler("zx", (-90, 60), degrees=True)
+    bodies = [turn.apply(sites) + (x * APART / 2, 0, 0) for turn, x in zip(turns, (-1, 1))]
+    rates = np.array([((0, 0.12, 0.1), (0.3, 0.2, -0.4)), ((0, -0.12, -0.1), (-0.3, 0.4, 0.2))]) / FS
+    return _deck(folder, "pair", "real", 2, choice.OF_WATER, bodies, (1, 2, 2), rates)
+
+
+def _encounter(folder):
+    """Deck of a body at rest in its frame whose third charge passes a fixed one."""
+    sites = np.array(SITES, dtype=float)
+    turned = Rotation.from_euler("zxz", (20, 90, 10), degrees=True).apply(sites - sites[2]) + (PASSES, -1, 0)
+    forces = ["pair_style coul/cut 90.0", "pair_coeff * *", "create_atoms 4 single 0 0 0", "set type 4 charge 1.0"]
+    forces += ["mass 4 1.0", *(f"mass {k} {m}" for k, m in zip((1, 2, 3), SITE_MASSES[1:]))]
+    forces += [f"set type {k} charge {q}" for k, q in zip((1, 2, 3), Center.SITE_CHARGES[1:])]
+    motion = [((0, 0.4, 0), (0, 0, 0))]
+    return _deck(folder, "encounter", "lj", 4, "\n".join(forces), [turned], (1, 1, 2, 3), motion)
+
+
+def scenes(folder, quick=False):
+    """(Scene, Problem) of all scenes; files that they read are written to ``folder``."""
+    folder = Path(folder).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    ratio = 2.0 if quick else 2**0.25
+    facts = {"samples": 1, "methods": (), "rigid_blocks": (), "measure": "sites"}
+    facts["tolerances"] = plan.half_decades(2, 8) if quick else plan.half_decades(1, 13)
+    starts = facts | {"measure": "position"}
+
+    def numbers(first, last):
+        return {"gear_blocks": plan.geometric(first, last, ratio), "evaluations": plan.geometric(first, 2 * last, ratio**2)}
+
+    for key, title, end, factor, last in (
+        ("weak", "Weak field, 200 time units", 200.0, 1, 3000),
+        ("spin", "Fast rotation, 49 turns in a weak field", 100.0, FASTER, 9000),
+    ):
+        problem, path = _in_the_middle(factor * np.array(OMEGA)), folder / key
+        path.with_suffix(".consistent").write_text(heldout.data_text(problem))
+        variables = (("data", str(path)),)
+        yield plan.Scene(f"case1-{key}", title, end, variables=variables, **facts, **numbers(40, last)), problem
+    path = _pair(folder)
+    scene = plan.Scene("pair", "Two molecules of water, 1 ps", 20 * FS, path=path, **facts, **numbers(150, 3000))
+    yield scene, deck_problem(path)
+    path, title = _encounter(folder), "A charge that passes a fixed one at a small distance"
+    problem = deck_problem(path)
+    problem.field.close()
+    facts["tolerances"] = facts["tolerances"][4:]  # with larger ones, solvers pass through the singularity
+    yield plan.Scene("encounter", title, 4.0, path=path, gear_blocks=(), **facts), problem.with_field(Center())
+    for scene, problem in islice(heldout.scenes(folder, quick), heldout.STARTS):
+        yield replace(scene, **starts, **numbers(30, 2400)), problem
+
+
+# --- running --------------------------------------------------------------------------------------
+def measure(lab, session):
+    """Title of the scene -> (column of the error in a row, name -> curves)."""
+    found, planned = {}, list(scenes(lab.out / "rivals", lab.quick))
+    for scene, problem in planned:
+        accuracy = {"tolerance": TIGHT} if isinstance(problem.field, Center) else {}
+        state = reference_state(problem, scene.end, folder=lab.out / "reference", **accuracy)
+        sites = problem.site_positions(state).astype(np.float64)
+        ids = getattr(problem.field, "ids", np.arange(1, len(sites) + 1))
+        reference = Reference(problem, state, ids, sites)
+        with lab.share(1 / len(planned)):
+            own = {FIXED: [peers.fixed(session, scene, reference)]} if scene.gear_blocks else {}
+            own[TOLERANCE] = peers.controlled(session, scene, reference)
+            names = peers.OF_STARTS if scene.measure == "position" else peers.STRONGEST
+            own |= peers.measure(lab, session, scene, reference, names)
+        found[scene.title] = plan.COLUMNS[scene.measure], own
+        if "ids" in vars(problem.field):
+            problem.field.close()
+    return found
