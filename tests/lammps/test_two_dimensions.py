@@ -12,12 +12,15 @@ ROD = "rod\n\n5 atoms\n\nCoords\n\n{}\n\nTypes\n\n{}\n".format(
 )
 LINES = {
     "flat": "fix flat all enforce2d",
-    "bath": "fix bath all langevin 1.0 1.0 0.5 4711",
+    "bath": "fix bath all langevin 1.0 1.0 0.5 {seed}",
     "move": "fix move all gear/quat molecule",
 }
-SCENES = {
-    "gas": "pair_style zero 2.5\npair_coeff * *",
-    "liquid": "pair_style lj/cut 2.5\npair_coeff * * 1.0 0.8",
+FREE_OF_FORCES = "pair_style zero 2.5\npair_coeff * *"
+LATTICE = "lattice sq 0.04 origin 0.5 0.5 0\ncreate_atoms 0 box mol w 4711"
+SCENES = {  # pair style, edge of the box, bodies and their number, steps
+    "gas": (FREE_OF_FORCES, 35, LATTICE, 49, 12000),
+    "liquid": ("pair_style lj/cut 2.5\npair_coeff * * 1.0 0.8", 35, LATTICE, 49, 12000),
+    "one body": (FREE_OF_FORCES, 10, "create_atoms 0 single 5 5 0 mol w 4711", 1, 100000),
 }
 SCENE = """
 units lj
@@ -35,29 +38,29 @@ velocity all create 1.0 4711
 timestep 0.005
 compute away all reduce max z vz fz
 thermo 20
-thermo_style custom step temp c_away[*]
+thermo_style custom step ke c_away[*]
+thermo_modify norm no
 run {steps}
 """
-
-
-def scene(pair, order, size=35, create="lattice sq 0.04 origin 0.5 0.5 0\ncreate_atoms 0 box mol w 4711", steps=3000):
-    fixes = "\n".join(LINES[name] for name in order)
-    return SCENE.format(pair=pair, fixes=fixes, size=size, create=create, steps=steps)
+ORDERS = [*permutations(LINES), ("bath", "move")]
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_every_order_of_fixes(lmp_tree, name):
+    """With other random numbers in each order; the temperature of all of them within three standard errors."""
     (lmp_tree.folder / "triangle.mol").write_text(TRIANGLE)
-    orders = [*permutations(LINES), ("bath", "move")]
-    single = "create_atoms 0 single 5 5 0 mol w 4711"
-    decks = [scene(SCENES[name], order) for order in orders]
-    decks += [scene(SCENES[name], order, size=10, create=single, steps=1000) for order in orders]
-    tables = lmp_tree.succeed(one_after_the_other(decks)).thermo
-    assert len(tables) == len(decks)
+    pair, size, create, number, steps = SCENES[name]
+    settings = dict(pair=pair, size=size, create=create, steps=steps)
+    fixes = ["\n".join(LINES[one] for one in order).format(seed=4711 + n) for n, order in enumerate(ORDERS)]
+    tables = lmp_tree.succeed(one_after_the_other([SCENE.format(fixes=one, **settings) for one in fixes])).thermo
+    assert len(tables) == len(ORDERS)
     for table in tables:
         assert set(table["c_away[1]"]) == set(table["c_away[2]"]) == {0.0}
-    for table in tables[: len(orders)]:  # 49 bodies
-        assert np.mean(table["Temp"][50:]) == pytest.approx(1.0, abs=0.1)
+    times = len(ORDERS) * (steps * 0.005 - 5) / 0.5  # energies are uncorrelated after damp / 2, on both sides
+    bar = np.sqrt(2 / (3 * number * times))
+    found = [np.mean(table["KinEng"][50:]) / (1.5 * number) for table in tables]
+    assert np.mean(found) == pytest.approx(1.0, abs=3 * bar)
+    assert found == pytest.approx([1.0] * len(ORDERS), abs=4 * bar * len(ORDERS) ** 0.5)
 
 
 ARMS = np.array([(-0.6, 0.1, 0.2), (0.5, 0.4, -0.3), (0.2, -0.7, 0.1), (0.3, 0.2, 0.25)])
