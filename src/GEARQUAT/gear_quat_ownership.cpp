@@ -175,7 +175,8 @@ void Ownership::check_whole()
         : fmt::format("has {} of its atoms left, without its owner atom", found.left);
     error->all(FLERR,
                "Fix gear/quat: body {} {}; a body must be removed as a whole, and no atom "
-               "of it may leave the box through a face that is not periodic",
+               "of it may leave the box through a face that is not periodic, as it does if the "
+               "time step is too long or atoms overlap",
                found.broken, had);
   }
   follow_atom_ids();

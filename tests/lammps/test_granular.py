@@ -9,6 +9,7 @@ would be a third of this.
 import math
 
 import pytest
+from test_memory import OLD, on_a_bed
 
 STIFF = 1.0e4
 DAMPING = 24.733  # of the mass
@@ -144,33 +145,7 @@ def test_contacts_of_few_steps_make_no_energy(lmp_wheel, wall):
     assert speeds[0] < 0.45 < 1.0 < speeds[1]
 
 
-BED = """
-units lj
-atom_style sphere
-atom_modify map array
-boundary p p f
-newton off
-comm_modify vel yes cutoff 3
-lattice sc 1.0
-region box block 0 4 0 4 0 8 units box
-create_box 2 box
-region bed block 0 3.9 0 3.9 0 0.1 units box
-fix molecules all property/atom mol ghost yes
-create_atoms 2 region bed
-create_atoms 1 single 2.3 2.2 1.2 units box
-create_atoms 1 single 2.9 2.2 1.2 units box
-create_atoms 1 single 2.5 2.7 1.3 units box
-set type * diameter 1.0 density 1.0
-group clump type 1
-group bed type 2
-set group clump mol 1
-pair_style gran/hooke/history 20000 NULL 50 NULL 0.5 1
-pair_coeff * *
-neigh_modify exclude molecule/intra clump
-fix move clump gear/quat molecule report no
-fix pull all gravity 1.0 vector 0.1 0 -1
-fix hold bed freeze
-timestep 0.0004
+BED = on_a_bed(f"gran/hooke/history {OLD}", z=1.0) + """
 compute ke clump ke
 compute center clump com
 thermo_style custom step c_ke c_center[1] c_center[3]

@@ -49,9 +49,9 @@ timestep 0.0004
 NO_PAIRS = "pair_style zero 1.2\npair_coeff * *"
 
 
-def on_a_bed(pair, coeff="* *"):
+def on_a_bed(pair, coeff="* *", z=0.87):
     return SPHERES.format(
-        bed="create_atoms 2 region bed", z=0.87, pair=f"pair_style {pair}\npair_coeff {coeff}", wall=""
+        bed="create_atoms 2 region bed", z=z, pair=f"pair_style {pair}\npair_coeff {coeff}", wall=""
     )
 
 
