@@ -6,39 +6,35 @@ import pytest
 from benchmarks.engine.lab import Lab
 from benchmarks.engine.session import Session
 from benchmarks.reference.lammps_forces import LammpsForces
-from benchmarks.studies.accuracy import peers, rivals, strongest
-from benchmarks.studies.accuracy.runs import Results
+from benchmarks.studies.rivals import peers, scenes, strongest
 
 
 def test_forces_of_the_encounter_are_those_of_its_deck(tmp_path):
-    scene, problem = next(both for both in rivals.scenes(tmp_path, quick=True) if both[0].key == "encounter")
+    scene, problem = next(both for both in scenes.scenes(tmp_path, quick=True) if both[0].key == "encounter")
     places = problem.site_positions(problem.start).astype(float)
     with LammpsForces(scene.deck) as field:
         field.choose(np.arange(1, 5))
         (energy, forces), (right, exact) = (one.energy_and_forces(places) for one in (field, problem.field))
     assert float(right) == pytest.approx(energy, rel=1e-13) and np.abs(exact - forces).max() < 1e-12
     assert np.abs(1.01 * exact - forces).max() > 1e-3
-    assert places[2] == pytest.approx([rivals.PASSES, -1, 0], abs=1e-14)
+    assert places[2] == pytest.approx([scenes.PASSES, -1, 0], abs=1e-14)
 
 
-def test_best_methods_of_scenes(tmp_path, monkeypatch):
+def test_best_methods_of_scenes(tmp_path):
     """A splitting is the best in a weak field; the fix under a tolerance reaches the error in an encounter."""
-    some, all_scenes = ("case1-weak", "encounter", "case1-start7"), rivals.scenes
-    monkeypatch.setattr(rivals, "scenes", lambda *a: [both for both in all_scenes(*a) if both[0].key in some])
-    monkeypatch.setattr(peers, "STRONGEST", ("DDEABM", "SABA4, 4 stages"))
-    results, lab = Results(True), Lab(tmp_path, quick=True)
     with Session(tmp_path / "logs") as session:
-        results.rivals = rivals.measure(lab, session)
-    weak, encounter, start = strongest.compared(results).values()
+        results = scenes.measure(Lab(tmp_path, quick=True), session)
+    case1, weak, encounter, start = strongest.compared(results).values()
+    assert all(own[scenes.TOLERANCE].value < cost.value for own, (_, cost) in case1[:2])
     for (own, (name, cost)), most in zip(weak[:3], (0.4, 0.4, 0.4)):
-        assert name == "SABA4, 4 stages" and cost.value < most * own[rivals.FIXED].value
-    assert weak[2][0][rivals.FIXED].value < 900  # the fix reaches 1e-8 of the same motion
+        assert name == "SABA4, 4 stages" and cost.value < most * own[scenes.FIXED].value
+    assert weak[2][0][scenes.FIXED].value < 900  # the fix reaches 1e-8 of the same motion
     own, (name, cost) = encounter[0]
-    assert name == "DDEABM" and own[rivals.FIXED] is None and own[rivals.TOLERANCE].value < cost.value
-    assert all(own[rivals.FIXED] for own, _ in start)
+    assert name == "DDEABM" and own[scenes.FIXED] is None and own[scenes.TOLERANCE].value < cost.value
+    assert all(own[scenes.FIXED] for own, _ in start)
     texts, (number, _) = strongest.losses(results)
-    assert [title for title, *_ in texts] == [list(results.rivals)[0]] and number == 4
-    tables = strongest.scenes(results)
+    assert [title for title, *_ in texts] == [list(results)[1]] and number == 4
+    tables = strongest.of_scenes(results)
     assert len(tables["rivals"].rows) == 6 and len(tables["starts"].rows) == 2
 
 

@@ -2,26 +2,23 @@
 
 plan.py      scenes, methods and steps
 runs.py      references, errors of runs, and the sequence of all runs
-peers.py     other methods: solvers that control their steps, splittings, a multistep method, compositions
-rivals.py    scenes in which the fix is compared with the strongest of them
 heldout.py   scenes that were not used to choose coefficients
 choice.py    scenes that were not used for the rule of `values auto`
 evaluate.py  fitted orders, costs of given errors; arrays in, numbers out
 tables.py    tables and measurements
-strongest.py comparison of evaluations with the strongest of the other methods
 figures.py   the pictures
 """
 
 from benchmarks.engine import Finding, Study
 from benchmarks.engine.session import Session
 
-from . import choice, evaluate, figures, heldout, peers, plan, rivals, runs, strongest, tables
+from . import choice, evaluate, figures, heldout, plan, runs, tables
 
 #: errors that the sentences of the page use
 SAMPLE, FINE = 1e-6, 1e-8
-#: parts of the study with the scenes of heldout.py, choice.py and rivals.py, and their share of the work
-HELD_OUT, CHOICE, RIVALS = "heldout", "choice", "rivals"
-SHARE, SHARE_OF_RIVALS = 0.05, 0.25
+#: parts of the study with the scenes of heldout.py and choice.py, and their share of the work
+HELD_OUT, CHOICE = "heldout", "choice"
+SHARE = 0.05
 
 
 def _milliseconds(cost):
@@ -30,21 +27,17 @@ def _milliseconds(cost):
 
 def _of_case1(results):
     """Tables, measurements and variables of the template from test case 1."""
-    shown, measurements = strongest.case1(results)
-    speedups, found = tables.case1(results)
-    shown, measurements = shown | speedups, measurements + found
-    for name in ("orders", "rounding", "modify"):
+    shown, measurements = tables.case1(results)
+    for name in ("evaluations", "orders", "rounding", "modify"):
         shown[name], found = getattr(tables, name)(results)
         measurements += found
     method, best = tables.cheapest_setting(results, "case1", SAMPLE)
     others = plan.DEFAULT, plan.RIGID_NVE
     prices = [best, *(evaluate.price(results, "case1", m, SAMPLE) for m in others)]
     exact = [error for key, points in results.rounding.items() if key[1] for _, error in points]
-    name, peer = strongest.strongest(results, SAMPLE)
-    counts = [*strongest.ours(results, SAMPLE).values(), peer]
+    count = evaluate.price(results, "case1", plan.DEFAULT, SAMPLE, "evaluations")
     context = {
-        "counts": [tables.count_text(cost) for cost in counts],
-        "peer": name,
+        "count": tables.count_text(count),
         "speedup": tables.ratio_text(tables.speedups(results, "case1", SAMPLE)[0], error=False),
         "end": f"{results.scenes['case1'].end:g}",
         "sample": tables.power(SAMPLE),
@@ -59,17 +52,15 @@ def _of_case1(results):
 
 def measure(lab):
     """Results of the requested parts."""
-    shares, results = {HELD_OUT: SHARE, CHOICE: SHARE, RIVALS: SHARE_OF_RIVALS}, runs.Results(lab.quick)
-    apart, alone = set(shares), len(lab.parts) == 1
+    apart, results = {HELD_OUT, CHOICE}, runs.Results(lab.quick)
     asked = {part for part in apart if part in lab.parts or not lab.parts}
     with Session(lab.out / "logs") as session:
         if set(lab.parts) - apart or not lab.parts:
-            with lab.share(1 - sum(shares[part] for part in asked)):
+            with lab.share(1 - SHARE * len(asked)):
                 results = runs.measure(lab, session)
-        for part, module in ((HELD_OUT, heldout), (RIVALS, rivals)):
-            if part in asked:
-                with lab.share(1.0 if alone else shares[part]):
-                    setattr(results, part, module.measure(lab, session))
+        if HELD_OUT in asked:
+            with lab.share(SHARE if len(lab.parts) != 1 else 1.0):
+                results.heldout = heldout.measure(lab, session)
     if CHOICE in asked:
         results.choice = choice.measure(lab)
     return results
@@ -93,11 +84,6 @@ def find(results):
     if results.heldout:
         shown["heldout"], found = heldout.find(results.heldout)
         measurements += found
-    if results.rivals:
-        shown |= strongest.scenes(results)
-        context["losses"], (number, lost) = strongest.losses(results)
-        context |= {"comparisons": number, "lost": list(lost.values()), "weights": (peers.FEW, len(peers.WEIGHTS))}
-        context["encounter"] = f"{rivals.PASSES:g}"
     if results.choice:
         shown["choice"], found = choice.find(results.choice)
         measurements += found
@@ -114,11 +100,11 @@ def find(results):
 STUDY = Study(
     "accuracy",
     "What accuracy costs",
-    1800.0,
+    1200.0,
     measure,
     find,
     page="accuracy_cost",
-    parts=(*plan.scenes(False), HELD_OUT, CHOICE, RIVALS),
+    parts=(*plan.scenes(False), HELD_OUT, CHOICE),
     blocks={
         "README.md": "accuracy_cost.readme.md.j2",
         "paper/paper.md": "accuracy_cost.paper.md.j2",

@@ -134,16 +134,6 @@ def cheapest(costs_by_name):
     return min(known, key=lambda item: item[1].value, default=(None, None))
 
 
-def curves(rows, column):
-    """Arrays (2, n) of evaluations and errors of lists of rows of peers.py, with the errors of a column."""
-    return [np.array([(row[1], row[column]) for row in own], dtype=float).reshape(-1, 2).T for own in rows]
-
-
-def lowest_cost(curves, target):
-    """Cost of an error on the curve, an array (2, n) of evaluations and errors, on which it is lowest, or None."""
-    return cheapest({k: cost_of(*curve, target) for k, curve in enumerate(curves)})[1]
-
-
 def price(results, scene, method, target, unit="seconds", extrapolate=False):
     """Cost of an error with one method, with the uncertainty of its timings.
 

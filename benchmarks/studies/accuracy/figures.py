@@ -8,17 +8,11 @@ import numpy as np
 from benchmarks.engine import Curve, Panel, draw
 from benchmarks.engine.methods import looks
 from benchmarks.engine.panels import RECONSTRUCTED
-from benchmarks.reference.multistep import LABEL as MULTISTEP
-from benchmarks.reference.solvers import DDEABM, PAIR
 from gearquat_analysis.style import COLOR, STYLE
 
 from . import plan, tables
-from .evaluate import cost_of, fitted_order, price
-from .peers import OF_TOP
+from .evaluate import fitted_order, price
 
-#: other methods that the pictures show, and their colors
-PEER = {DDEABM: "#009e73", MULTISTEP: "#9467bd", PAIR: "#e69f00", "CVODE Adams": "#8c564b"}
-PEER |= {"DOP853": "#56b4e9", "LSODA": "#cc79a7"}
 AXIS = {"seconds": "wall time of the run, ms", "evaluations": "force evaluations, start included"}
 #: smallest value in a logarithmic panel
 TINY = 1e-17
@@ -30,16 +24,6 @@ def points(results, scene, method, unit, quantity):
     y = results.column(scene, method, quantity)
     good = np.isfinite(x) & np.isfinite(y)
     return x[good], np.maximum(y[good], TINY)
-
-
-def peer_points(results, scene, name, target=1e-6):
-    """Evaluations and errors of another method with the weights that are best for one error."""
-
-    def cost(curve):
-        found = cost_of(*curve, target)
-        return found.value if found else np.inf
-
-    return min(results.peer(scene, name), key=cost, default=np.empty((2, 0)))
 
 
 # --- the main picture -----------------------------------------------------------------------------
@@ -83,10 +67,6 @@ def draw_main(path, results):
             axis.set_xlim(left=0.6 * axis.get_xlim()[0])
         for target in tables.TARGETS:
             _arrow(axes[0], results, target)
-        for (name, color), height in zip(PEER.items(), np.arange(0.94, 0, -0.055)):
-            axes[1].plot(*peer_points(results, "case1", name), "-.", color=color, linewidth=1)
-            look = {"color": color, "transform": axes[1].transAxes, "fontsize": 9, "ha": "right"}
-            axes[1].text(0.98, height, name, **look)
         axes[0].set_ylabel("error of the center of mass at the end")
         heading = results.scenes["case1"].heading
         figure.suptitle(heading, x=0.01, ha="left", fontsize=10)
@@ -136,11 +116,8 @@ def top_panels(results, scene):
         curves = _curves(results, scene, unit, quantity) + more
         return Panel(title, AXIS[unit], "", curves, "xy", legend=False)
 
-    others = tuple(
-        Curve(name, *peer_points(results, scene.key, name), PEER[name], "-.", "^") for name in OF_TOP
-    )
     orientation = _curves(results, scene, "evaluations", "orientation", label=True)
-    orientation += others + _fits(results, scene)
+    orientation += _fits(results, scene)
     dots = [
         Curve("", curve.x, curve.y, curve.color, "", marker, hollow=name == "tangency")
         for name, marker in (("norm", "o"), ("tangency", "s"))

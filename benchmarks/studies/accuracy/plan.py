@@ -7,7 +7,6 @@ A method is a set of variables of the decks in ``examples``, so that every run c
 import itertools
 from dataclasses import dataclass, replace
 from functools import cache
-from pathlib import Path
 
 from benchmarks.engine import decks
 from benchmarks.engine.methods import (
@@ -21,8 +20,6 @@ from benchmarks.engine.methods import (
 )
 
 PASSES = 1, DEFAULT_PASSES
-#: columns of the errors in the rows of peers.py
-COLUMNS = {"position": 2, "orientation": 3, "sites": 4}
 #: columns in the log of every scene (examples/common/in.motion), and an additional one
 TOTAL, NORM, TANGENCY = "v_total", "v_qerror", "f_move[4]"
 VALUES = {"second": range(4, 13), "first": range(3, 9)}
@@ -70,11 +67,6 @@ def geometric(first, last, ratio):
     return tuple(sorted(set(numbers)))
 
 
-def half_decades(first, last):
-    """1e-first ... 1e-last, two per decade."""
-    return tuple(10.0 ** (-k / 2) for k in range(2 * first, 2 * last + 1))
-
-
 @dataclass(frozen=True, eq=False)
 class Scene:
     """A deck and the parameters of its runs.
@@ -82,11 +74,10 @@ class Scene:
     * ``end``: end of every run; ``samples``: number of samples, which divides the number of steps
     * ``gear_blocks``, ``rigid_blocks``: steps between two samples, ascending; ``far``: the same for
       fix rigid/nve/small, if different
-    * ``measure``: the error for which costs are given: position, orientation or sites
+    * ``measure``: the error for which costs are given, position or orientation
     * ``time``: unit of time, "" for reduced units
     * ``cost``: approximate seconds per step; ``minutes``: approximate duration of all runs
-    * ``tolerances`` of other solvers; ``evaluations``: approximate numbers for methods with equal steps
-    * ``smooth``: True if forces have no jump; ``path`` of the deck, if it is not one of the examples
+    * ``smooth``: True if forces have no jump
     """
 
     key: str
@@ -100,17 +91,14 @@ class Scene:
     time: str = ""
     cost: float = 1.3e-6
     minutes: float = 15.0
-    tolerances: tuple = ()
-    evaluations: tuple = ()
     smooth: bool = True
     far: tuple = ()
     variables: tuple = ()
-    path: str = ""
 
     @property
     def deck(self):
         """Path of the input script."""
-        return Path(self.path) if self.path else decks.deck(self.key.partition("-")[0])
+        return decks.deck(self.key.partition("-")[0])
 
     @property
     def heading(self):
@@ -180,7 +168,7 @@ def _one_body(quick, **facts):
         blocks, rigid_blocks = geometric(8, 1000, 2 ** (1 / 3)), geometric(16, 1 << 14, 2.0)
         far = geometric(16, 1 << 17, 2.0)  # down to the round-off error
     facts |= {"gear_blocks": blocks, "rigid_blocks": rigid_blocks, "far": far}
-    return Scene(tolerances=half_decades(4, 12) if quick else half_decades(1, 14), **facts)
+    return Scene(**facts)
 
 
 def _water(quick, forces, **facts):
@@ -197,9 +185,8 @@ def scenes(quick):
     """Key -> Scene, all of them."""
     cage = "One body in the cage (test case 1, consistent body)"
     smooth, plain = (f"500 SPC/E molecules, {how} cutoff" for how in ("smooth at the", "plain"))
-    work = geometric(1000, 4000, 2.0) if quick else geometric(500, 12_000, 2 ** (1 / 3))
     found = (
-        _one_body(quick, key="case1", title=cage, evaluations=work),
+        _one_body(quick, key="case1", title=cage),
         _one_body(quick, key="top", title="Free asymmetric top", measure="orientation"),
         _water(quick, "smooth", key="water", title=smooth, methods=FEW_METHODS),
         _water(quick, "plain", key="water-plain", title=plain, methods=ROUGH_METHODS, smooth=False),

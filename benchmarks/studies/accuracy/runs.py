@@ -11,7 +11,7 @@ from benchmarks.engine.sites import pose_errors
 from benchmarks.reference import FreeField, paper_problem, reference_state
 from benchmarks.reference.lammps_forces import deck_problem
 
-from . import evaluate, peers, plan
+from . import plan
 
 #: smallest number of timings of every run
 ROUNDS, QUICK_ROUNDS = 5, 2
@@ -72,8 +72,6 @@ class Results:
     """All measurements.
 
     * ``runs``: list of Point
-    * ``peers``: (scene, name) -> curves of peers.py; in test case 1 also of the fix with keyword tolerance
-    * ``rivals``: scene -> (column, curves) for the scenes of rivals.py
     * ``limits``: (scene, method) -> largest usable step, 0 if none was found
     * ``orders``: (formulation, N) and ``rounding``: (formulation, True if compensated) -> list of (step, error of
       position) in test case 1
@@ -84,14 +82,12 @@ class Results:
 
     quick: bool
     runs: list = field(default_factory=list)
-    peers: dict = field(default_factory=dict)
     limits: dict = field(default_factory=dict)
     orders: dict = field(default_factory=dict)
     rounding: dict = field(default_factory=dict)
     modify: dict = field(default_factory=dict)
     heldout: dict = field(default_factory=dict)
     choice: dict = field(default_factory=dict)
-    rivals: dict = field(default_factory=dict)
 
     @property
     def scenes(self):
@@ -112,11 +108,6 @@ class Results:
         """Steps and errors (the scene's measure) of one method, two arrays (n,)."""
         measure = plan.scenes(self.quick)[scene].measure
         return self.column(scene, method, "dt"), self.column(scene, method, measure)
-
-    def peer(self, scene, name):
-        """Curves of one of ``peers.NAMES``: a list of arrays (2, n) of evaluations and errors (the scene's measure)."""
-        column = plan.COLUMNS[plan.scenes(self.quick)[scene].measure]
-        return evaluate.curves(self.peers.get((scene, name), []), column)
 
 
 # --- references -----------------------------------------------------------------------------------
@@ -274,20 +265,16 @@ def time_all(lab, session, outcomes):
 
 
 def run_scene(lab, session, results, scene, reference):
-    """Errors, largest usable steps and timings of all methods, and the other methods."""
-    with lab.share(0.1):
+    """Errors, largest usable steps and timings of all methods."""
+    with lab.share(0.15):
         outcomes = judge_all(lab, session, scene, reference)
-    with lab.share(0.1):
+    with lab.share(0.15):
         for method in scene.methods if scene.smooth else ():
             results.limits[scene.key, method.key] = largest_step(session, scene, method)
             lab.advance(1 / len(scene.methods))
-    with lab.share(0.4):
+    with lab.share(0.6):
         times = time_all(lab, session, outcomes)
     results.runs += [point_of(run, *own, times.get(run)) for run, own in outcomes.items()]
-    with lab.share(0.3):
-        names = peers.NAMES if scene.key == "case1" else peers.OF_TOP
-        for name, curves in peers.measure(lab, session, scene, reference, names).items():
-            results.peers[scene.key, name] = curves
 
 
 def run_further(lab, session, results, scene, reference):
@@ -316,6 +303,5 @@ def measure(lab, session):
             reference = reference_of(scene, lab.out / "reference", session)
             run_scene(lab, session, results, scene, reference)
             if scene.key == "case1":
-                results.peers[scene.key, "tolerance"] = peers.controlled(session, scene, reference)
                 run_further(lab, session, results, scene, reference)
     return results

@@ -8,6 +8,7 @@ from dataclasses import astuple, fields
 import numpy as np
 
 from benchmarks.engine import Measurement, Table
+from benchmarks.engine.methods import GEARS
 from benchmarks.engine.page import grouped
 from benchmarks.engine.statistics import order
 from benchmarks.reference.stability import linear_limit
@@ -27,6 +28,8 @@ MOST_ROUNDING, MOST_MODIFY = {False: 5e-11, True: 1e-12}, 1.0
 NONE = "–"
 GEAR = {method.key for method in plan.ALL_METHODS if method.gear}
 THEIRS = f"time of `{plan.RIGID_NVE.label}` relative to"
+#: a step, and the largest error with the defaults of the first formulation
+FIRST_STEP, MOST_FIRST = 0.1, 3e-7
 ROWS = ("`fix gear/quat`, default settings", "`fix gear/quat`, cheapest settings")
 
 
@@ -92,6 +95,31 @@ def case1(results):
             found.append(Measurement(what, value, error, ".3g", "times", least=least))
     header = ("error", "cheapest settings", "namely", "default settings")
     return {"speedup": Table(header, speed)}, found
+
+
+def evaluations(results):
+    """Force evaluations in test case 1; table and measurements."""
+    methods = {"default settings": plan.DEFAULT, "`corrector gear`": GEARS["second"]}
+    cells = {f"`fix gear/quat`, {words}": [] for words in (*methods, "best number of values")}
+    cells |= {"this setting is": [], plan.RIGID_NVE.label: []}
+    for target in TARGETS:
+        method, best = cheapest_setting(results, "case1", target, "evaluations")
+        costs = [price(results, "case1", m, target, "evaluations") for m in methods.values()]
+        theirs = price(results, "case1", plan.RIGID_NVE, target, "evaluations", extrapolate=True)
+        texts = [*map(count_text, (*costs, best)), method.label if method else NONE, count_text(theirs)]
+        for row, text in zip(cells.values(), texts):
+            row.append(text)
+    error = error_at(*results.errors("case1", plan.DEFAULTS["first"]), FIRST_STEP)
+    what = f"test case 1, first formulation, default settings, step {FIRST_STEP:g}: error"
+    header = ("force evaluations", *(f"error {power(target)}" for target in TARGETS))
+    return Table(header, [[label, *row] for label, row in cells.items()]), [Measurement(what, error, most=MOST_FIRST)]
+
+
+def error_at(steps, errors, step):
+    """Error at a step between measured ones, interpolated log-log; arrays (n,)."""
+    order = np.argsort(steps)
+    steps, errors = np.log(np.asarray(steps)[order]), np.log(np.asarray(errors)[order])
+    return float(np.exp(np.interp(np.log(step), steps, errors)))
 
 
 def other_speedups(results):

@@ -1,11 +1,11 @@
-"""Scenes in which the fix is compared with the strongest of the other methods, apart from test case 1.
+"""Scenes in which the fix is compared with other methods, and their runs.
 
-Two are in the cage of test case 1: in its middle the forces are weak, and the body turns there slowly or fast.  Two
+The first is test case 1.  Two are in the cage of test case 1: in its middle the forces are weak, and the body turns there slowly or fast.  Two
 molecules of water vibrate about a hydrogen bond, and a charge passes a fixed one at a small distance, where only methods
 that control their steps are of use.  The ten starts are those of heldout.py.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, fields
 from itertools import islice
 from pathlib import Path
 
@@ -17,9 +17,12 @@ from benchmarks.reference import Cage, Problem, State, paper_problem, reference_
 from benchmarks.reference.lammps_forces import deck_problem
 from benchmarks.reference.paper import SITE_MASSES, SITES
 
-from . import choice, heldout, peers, plan
-from .runs import Reference
+from benchmarks.studies.accuracy import choice, heldout, plan
+from benchmarks.studies.accuracy.runs import Reference
 
+from . import peers
+
+CASE1 = "Test case 1"
 #: angular velocity in the weak field, along the principal axes, and the factor of the fast rotation
 OMEGA, FASTER = (0.2, 0.3, 0.12), 8
 #: angle between the hydrogen bond and the first molecule's axis, distance of the molecules in angstrom, units of time
@@ -30,6 +33,11 @@ PASSES = 0.02
 TIGHT = 1e-14
 #: keys of the fix, beside the names of the other methods
 FIXED, TOLERANCE = "no keyword", "`tolerance`"
+#: keys of the scenes, and methods, of quick runs
+QUICK = ("case1", "case1-weak", "encounter", "case1-start7")
+QUICK_NAMES = ("DDEABM", "Quinlan–Tremaine 8", "SABA4, 4 stages")
+#: columns of the errors in the rows of peers.py
+COLUMNS = {"position": 2, "orientation": 3, "sites": 4}
 START = "start"
 
 ENDING = """\
@@ -57,6 +65,29 @@ class Center(Cage):
 
 
 # --- scenes ---------------------------------------------------------------------------------------
+@dataclass(frozen=True, eq=False)
+class Scene(plan.Scene):
+    """A scene of accuracy, of which the error may also be that of "sites".
+
+    ``tolerances`` of methods that control their steps; ``evaluations``: approximate numbers for methods with equal
+    steps; ``path`` of the deck, if it is not one of the examples.
+    """
+
+    tolerances: tuple = ()
+    evaluations: tuple = ()
+    path: str = ""
+
+    @property
+    def deck(self):
+        """Path of the input script."""
+        return Path(self.path) if self.path else super().deck
+
+
+def half_decades(first, last):
+    """1e-first ... 1e-last, two per decade."""
+    return tuple(10.0 ** (-k / 2) for k in range(2 * first, 2 * last + 1))
+
+
 def _in_the_middle(omega):
     """The body of test case 1 in the middle of the cage."""
     base = paper_problem(1)
@@ -101,12 +132,13 @@ def scenes(folder, quick=False):
     folder.mkdir(parents=True, exist_ok=True)
     ratio = 2.0 if quick else 2**0.25
     facts = {"samples": 1, "methods": (), "rigid_blocks": (), "measure": "sites"}
-    facts["tolerances"] = plan.half_decades(2, 8) if quick else plan.half_decades(1, 13)
+    facts["tolerances"] = half_decades(2, 8) if quick else half_decades(1, 13)
     starts = facts | {"measure": "position"}
 
     def numbers(first, last):
         return {"gear_blocks": plan.geometric(first, last, ratio), "evaluations": plan.geometric(first, 2 * last, ratio**2)}
 
+    yield Scene("case1", CASE1, 200.0, **starts, **numbers(300, 6000)), paper_problem(1)
     for key, title, end, factor, last in (
         ("weak", "Weak field, 200 time units", 200.0, 1, 3000),
         ("spin", "Fast rotation, 49 turns in a weak field", 100.0, FASTER, 9000),
@@ -114,23 +146,26 @@ def scenes(folder, quick=False):
         problem, path = _in_the_middle(factor * np.array(OMEGA)), folder / key
         path.with_suffix(".consistent").write_text(heldout.data_text(problem))
         variables = (("data", str(path)),)
-        yield plan.Scene(f"case1-{key}", title, end, variables=variables, **facts, **numbers(40, last)), problem
+        yield Scene(f"case1-{key}", title, end, variables=variables, **facts, **numbers(40, last)), problem
     path = _pair(folder)
-    scene = plan.Scene("pair", "Two molecules of water, 1 ps", 20 * FS, path=path, **facts, **numbers(150, 3000))
+    scene = Scene("pair", "Two molecules of water, 1 ps", 20 * FS, path=path, **facts, **numbers(150, 3000))
     yield scene, deck_problem(path)
     path, title = _encounter(folder), "A charge that passes a fixed one at a small distance"
     problem = deck_problem(path)
     problem.field.close()
     facts["tolerances"] = facts["tolerances"][4:]  # with larger ones, solvers pass through the singularity
-    yield plan.Scene("encounter", title, 4.0, path=path, gear_blocks=(), **facts), problem.with_field(Center())
+    yield Scene("encounter", title, 4.0, path=path, gear_blocks=(), **facts), problem.with_field(Center())
     for scene, problem in islice(heldout.scenes(folder, quick), heldout.STARTS):
-        yield replace(scene, **starts, **numbers(30, 2400)), problem
+        own = {one.name: getattr(scene, one.name) for one in fields(scene)}
+        yield Scene(**own | starts | numbers(30, 2400)), problem
 
 
 # --- running --------------------------------------------------------------------------------------
 def measure(lab, session):
     """Title of the scene -> (column of the error in a row, name -> curves)."""
-    found, planned = {}, list(scenes(lab.out / "rivals", lab.quick))
+    found, planned = {}, list(scenes(lab.out / "decks", lab.quick))
+    if lab.quick:
+        planned = [both for both in planned if both[0].key in QUICK]
     for scene, problem in planned:
         accuracy = {"tolerance": TIGHT} if isinstance(problem.field, Center) else {}
         state = reference_state(problem, scene.end, folder=lab.out / "reference", **accuracy)
@@ -141,8 +176,10 @@ def measure(lab, session):
             own = {FIXED: [peers.fixed(session, scene, reference)]} if scene.gear_blocks else {}
             own[TOLERANCE] = peers.controlled(session, scene, reference)
             names = peers.OF_STARTS if scene.measure == "position" else peers.STRONGEST
+            names = peers.NAMES if scene.title == CASE1 else names
+            names = [name for name in names if name in QUICK_NAMES] if lab.quick else names
             own |= peers.measure(lab, session, scene, reference, names)
-        found[scene.title] = plan.COLUMNS[scene.measure], own
+        found[scene.title] = COLUMNS[scene.measure], own
         if "ids" in vars(problem.field):
             problem.field.close()
     return found

@@ -15,8 +15,7 @@ from benchmarks.engine.session import RunError
 from benchmarks.engine.sites import pose_errors
 from benchmarks.reference import multistep, solvers, splittings
 from benchmarks.reference.splittings import KAHAN_LI, NEARLY_FREE, SPLITTINGS, symmetric
-
-from . import plan
+from benchmarks.studies.accuracy import plan
 
 SUZUKI = 1 / (4 - 4 ** (1 / 3))
 #: name -> parts of a step, each a step of fix rigid/nve/small
@@ -27,14 +26,12 @@ COMPOSITIONS = {
 CVODE = "CVODE Adams"
 ADAPTIVE = (solvers.DDEABM, CVODE, solvers.PAIR, *solvers.METHODS)
 SPLIT = {own.label: own for own in (*NEARLY_FREE, *SPLITTINGS)}
-#: methods that are also run from the held-out starts, where forces are strong, and in the other scenes of rivals.py
+#: methods that are also run from the held-out starts, where forces are strong, and in the other scenes
 OF_STARTS = (*ADAPTIVE, multistep.LABEL)
 STRONGEST = (*OF_STARTS, *list(SPLIT)[:4])
 NAMES = (*ADAPTIVE, multistep.LABEL, *SPLIT, *COMPOSITIONS)
-#: methods that are run with the free top
-OF_TOP = solvers.DDEABM, "DOP853"
 #: weights of the kinds of variables: the error of a length of 1 weighs the same as that of an angle times the radius of
-#: gyration, and as that of a rate over a part of the run; pairs of angle and part, of which most scenes have the first FEW
+#: gyration, and as that of a rate over a part of the run: pairs of angle and part, of which most scenes have the first FEW
 WEIGHTS = (1.0, 0.1), (0.1, 0.01), (0.1, 0.1), (1.0, 0.01)
 FEW = 2
 #: a curve ends at this error, or at this number of evaluations
@@ -83,11 +80,11 @@ def curve(settings, run):
 
 
 # --- the fix --------------------------------------------------------------------------------------
-def fixed(session, scene, reference):
-    """Curve of the fix without keywords over the numbers of steps of a scene."""
+def fixed(session, scene, reference, method=plan.DEFAULT):
+    """Curve of the fix, by default without keywords, over the numbers of steps of a scene."""
 
     def run(steps):
-        outcome = plan.Run(scene, plan.DEFAULT, steps).perform(session)
+        outcome = plan.Run(scene, method, steps).perform(session)
         return 1 + outcome.start + steps, errors_of_outcome(reference, outcome)
 
     return curve(scene.gear_blocks, run)
@@ -149,10 +146,9 @@ def _composed(session, scene, reference, parts):
     return curve([round(evaluations / len(parts)) for evaluations in scene.evaluations], run)
 
 
-def measure(lab, session, scene, reference, names=NAMES):
+def measure(lab, session, scene, reference, names):
     """Name -> curves, lists of (tolerance or number of steps, evaluations, errors of centers, orientations, sites)."""
     skipped = {CVODE} - set(solvers.available())
-    skipped |= set() if scene.tolerances else set(ADAPTIVE)
     skipped |= set() if scene.evaluations else set(NAMES) - set(ADAPTIVE)
     names, found = [name for name in names if name not in skipped], {}
     for name in names:
