@@ -135,12 +135,13 @@ print("\n".join(found))
 EOF
 }
 
-# The build requirements are installed in .venv as well, so that a rebuild compiles only changed files.
+# The build requirements are installed in .venv as well, so that a rebuild compiles only changed files.  Setuptools
+# builds extensisq, which has no wheel.
 pip_install_repository() {
   local extra="$1"
   cd "$ROOT"
   { listed . build-system requires; listed src/analysis build-system requires; } >build/requirements.txt
-  printf '%s\n' cmake ninja >>build/requirements.txt
+  printf '%s\n' cmake ninja 'setuptools>=70.1' >>build/requirements.txt
   .venv/bin/python -m pip install --disable-pip-version-check -r build/requirements.txt
   PATH="$ROOT/.venv/bin:$PATH" .venv/bin/python -m pip install --disable-pip-version-check \
     --no-build-isolation --config-settings=build-dir=build/plugin ./src/analysis ".$extra"
