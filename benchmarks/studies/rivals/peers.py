@@ -131,8 +131,10 @@ def _equal_steps(scene, reference, name):
             ((state, evaluations),) = splittings.states(*task, SPLIT[name], steps)
         return evaluations, errors_of_state(reference, state)
 
-    stages = SPLIT[name].stages if name in SPLIT else 1
-    return curve([round(evaluations / stages) for evaluations in scene.evaluations], run)
+    numbers = scene.gear_blocks  # of the multistep method as of the fix
+    if name in SPLIT:
+        numbers = [round(evaluations / SPLIT[name].stages) for evaluations in scene.evaluations]
+    return curve(numbers, run)
 
 
 def _composed(session, scene, reference, parts):

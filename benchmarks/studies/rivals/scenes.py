@@ -69,8 +69,7 @@ class Center(Cage):
 class Scene(plan.Scene):
     """A scene of accuracy, of which the error may also be that of "sites".
 
-    ``tolerances`` of methods that control their steps; ``evaluations``: approximate numbers for methods with equal
-    steps; ``path`` of the deck, if it is not one of the examples.
+    ``tolerances`` of methods that control their steps; ``evaluations``: approximate numbers for splittings; ``path`` of the deck, if it is not one of the examples.
     """
 
     tolerances: tuple = ()
