@@ -40,8 +40,8 @@ def _panel(results):
         for curve in sorted(strongest.curves(own.get(name, []), column), key=cost)[:1]:
             line = {"width": 2.0} if name in strongest.OURS else {"line": "-."}
             shown.append(Curve(name.strip("`"), *curve[:, np.isfinite(curve).all(axis=0)], color, **line))
-    look = {"ylim": (1e-11, 1.0)}
-    return Panel(scenes.CASE1, "force evaluations, start included", "error of the center of mass", tuple(shown), "xy", **look)
+    axes = "force evaluations, start included", "error of the center of mass"
+    return Panel(scenes.CASE1, *axes, tuple(shown), "xy", ylim=(1e-11, 1.0))
 
 
 def find(results):

@@ -1,9 +1,9 @@
 """The methods that the fix is compared with, counted in evaluations of the forces.
 
-These are solvers that control their steps, splittings with exact free rotation, a symmetric multistep method, fix
-rigid/nve/small, and compositions of its steps.  A method that controls its steps runs with several weights of the kinds
-of variables, and the best ones count.  LAMMPS runs the compositions itself: a step may be negative, and ``run 1 pre no``
-continues the last run.  The composition of order 4 is from M. Suzuki, Phys. Lett. A 146, 319 (1990).
+These are solvers that control their steps, splittings with exact free rotation, a symmetric multistep method, and
+compositions of the steps of fix rigid/nve/small.  A method that controls its steps runs with several weights of the
+kinds of variables, and the best ones count.  LAMMPS runs the compositions itself: a step may be negative, and ``run 1
+pre no`` continues the last run.  The composition of order 4 is from M. Suzuki, Phys. Lett. A 146, 319 (1990).
 """
 
 import warnings
@@ -31,7 +31,7 @@ OF_STARTS = (*ADAPTIVE, multistep.LABEL)
 STRONGEST = (*OF_STARTS, *list(SPLIT)[:4])
 NAMES = (*ADAPTIVE, multistep.LABEL, *SPLIT, *COMPOSITIONS)
 #: weights of the kinds of variables: the error of a length of 1 weighs the same as that of an angle times the radius of
-#: gyration, and as that of a rate over a part of the run: pairs of angle and part, of which most scenes have the first FEW
+#: gyration, and as that of a rate over a part of the run.  Pairs of angle and part; most scenes have FEW of them.
 WEIGHTS = (1.0, 0.1), (0.1, 0.01), (0.1, 0.1), (1.0, 0.01)
 FEW = 2
 #: a curve ends at this error, or at this number of evaluations
@@ -80,11 +80,11 @@ def curve(settings, run):
 
 
 # --- the fix --------------------------------------------------------------------------------------
-def fixed(session, scene, reference, method=plan.DEFAULT):
-    """Curve of the fix, by default without keywords, over the numbers of steps of a scene."""
+def fixed(session, scene, reference):
+    """Curve of the fix without keywords over the numbers of steps of a scene."""
 
     def run(steps):
-        outcome = plan.Run(scene, method, steps).perform(session)
+        outcome = plan.Run(scene, plan.DEFAULT, steps).perform(session)
         return 1 + outcome.start + steps, errors_of_outcome(reference, outcome)
 
     return curve(scene.gear_blocks, run)

@@ -1,8 +1,8 @@
 """Scenes in which the fix is compared with other methods, and their runs.
 
-The first is test case 1.  Two are in the cage of test case 1: in its middle the forces are weak, and the body turns there slowly or fast.  Two
-molecules of water vibrate about a hydrogen bond, and a charge passes a fixed one at a small distance, where only methods
-that control their steps are of use.  The ten starts are those of heldout.py.
+The first is test case 1.  Two are in the middle of its cage, where forces are weak and the body turns slowly or fast.
+Two molecules of water vibrate about a hydrogen bond, and a charge passes a fixed one at a small distance, where only
+methods that control their steps are of use.  The ten starts are those of heldout.py.
 """
 
 from dataclasses import dataclass, fields
@@ -16,7 +16,6 @@ from benchmarks.engine.decks import EXAMPLES
 from benchmarks.reference import Cage, Problem, State, paper_problem, reference_state
 from benchmarks.reference.lammps_forces import deck_problem
 from benchmarks.reference.paper import SITE_MASSES, SITES
-
 from benchmarks.studies.accuracy import choice, heldout, plan
 from benchmarks.studies.accuracy.runs import Reference
 
@@ -25,7 +24,7 @@ from . import peers
 CASE1 = "Test case 1"
 #: angular velocity in the weak field, along the principal axes, and the factor of the fast rotation
 OMEGA, FASTER = (0.2, 0.3, 0.12), 8
-#: angle between the hydrogen bond and the first molecule's axis, distance of the molecules in angstrom, units of time
+#: half of the angle of a molecule, distance of the oxygen atoms in angstrom, unit of the rates below in fs
 HALF, APART, FS = 109.47 / 2, 2.9, 48.88821291
 #: distance at which the charge would pass the fixed one without forces
 PASSES = 0.02
@@ -38,7 +37,6 @@ QUICK = ("case1", "case1-weak", "encounter", "case1-start7")
 QUICK_NAMES = ("DDEABM", "Quinlan–Tremaine 8", "SABA4, 4 stages")
 #: columns of the errors in the rows of peers.py
 COLUMNS = {"position": 2, "orientation": 3, "sites": 4}
-START = "start"
 
 ENDING = """\
 group body molecule > 0
@@ -69,7 +67,8 @@ class Center(Cage):
 class Scene(plan.Scene):
     """A scene of accuracy, of which the error may also be that of "sites".
 
-    ``tolerances`` of methods that control their steps; ``evaluations``: approximate numbers for splittings; ``path`` of the deck, if it is not one of the examples.
+    ``tolerances`` of methods that control their steps; ``evaluations``: approximate numbers for splittings;
+    ``path`` of the deck, if it is not one of the examples.
     """
 
     tolerances: tuple = ()
@@ -135,7 +134,8 @@ def scenes(folder, quick=False):
     starts = facts | {"measure": "position"}
 
     def numbers(first, last):
-        return {"gear_blocks": plan.geometric(first, last, ratio), "evaluations": plan.geometric(first, 2 * last, ratio**2)}
+        evaluations = plan.geometric(first, 2 * last, ratio**2)
+        return {"gear_blocks": plan.geometric(first, last, ratio), "evaluations": evaluations}
 
     yield Scene("case1", CASE1, 200.0, **starts, **numbers(300, 6000)), paper_problem(1)
     for key, title, end, factor, last in (

@@ -33,7 +33,7 @@ def costs(results, title, target):
 
 
 def compared(results):
-    """Title -> for each of TARGETS a pair: key of OURS -> Cost or None, and (name, Cost) of the strongest other method."""
+    """Title -> for each of TARGETS a pair: key of OURS -> Cost or None; (name, Cost) of the strongest other method."""
     found = {}
     for title in results:
         of_targets = [costs(results, title, target) for target in TARGETS]
@@ -66,7 +66,8 @@ def case1(results):
         for target, most, (own, (name, peer)) in zip(TARGETS, MOST[key], cells):
             value, at = own[key].value if own[key] else np.nan, f"test case 1, error {power(target)}"
             found.append(Measurement(f"{at}: force evaluations with {key}", value, spec=",.0f", most=most))
-            what, factor = f"{at}: evaluations of the strongest other method over {key}", peer.value / value if peer else np.nan
+            what = f"{at}: evaluations of the strongest other method over {key}"
+            factor = peer.value / value if peer else np.nan
             least = 1.0 if key == scenes.TOLERANCE else None
             found.append(Measurement(what, factor, None, ".3g", "times", name or "", least=least))
     header = ("force evaluations", *(f"error {power(target)}" for target in TARGETS))
