@@ -201,9 +201,9 @@ void Arguments::check_ranges()
     if (value.integer < range.fewest || value.integer > range.most)
       error->all(FLERR, "Fix gear/quat {}: {} is not from {} to {}{}", row.name, value.text,
                  range.fewest, range.most,
-                 row.ranges.size() == 1 ? ""
-                     : scheme.first()   ? ", as formulation first requires"
-                                        : ", as formulation second requires");
+                 row.ranges.size() == 1 ? std::string()
+                                        : std::string(", as formulation ") +
+                         word_of(scheme.formulation) + " requires");
     if (tolerance && row.most_with_tolerance && value.integer > row.most_with_tolerance)
       error->all(FLERR,
                  "Fix gear/quat tolerance: {} {} are more than {}, the largest number for which "
@@ -214,7 +214,7 @@ void Arguments::check_ranges()
           FLERR,
           "Fix gear/quat {}: formulation {} has no tuned coefficients for {} but for {}; use "
           "one of these numbers, or add corrector gear",
-          row.name, scheme.first() ? "first" : "second", value.integer,
+          row.name, word_of(scheme.formulation), value.integer,
           tuned_numbers(scheme.first(), ", "));
   }
 }

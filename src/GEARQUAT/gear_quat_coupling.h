@@ -256,7 +256,7 @@ void Coupling::correct_by_passes(Law &law, const Integrator &integrator, int pas
     Load load;
     BodyState before;
     if (masked) before = state;
-    last = integrator.finish(load_of(ibody, load), rows, pending[ibody]);
+    last = integrator.finish(rigid, load_of(ibody, load), rows, pending[ibody]);
     law.finish(integrator, rigid, rows);
     integrator.body_state(rigid, rows, state, bodies.change_frame(ibody));
     law.place(ibody, pending[ibody], state, last);

@@ -127,10 +127,8 @@ template <class Damper>
 Load damped_load(const RigidBody &body, const BodyState &state, const Load &load,
                  const Damper &alpha)
 {
-  double a[9], momentum_body[3], momentum_space[3], momentum[3];
-  rotation_matrix(state.q, dot4(state.q, state.q), a);
-  for (int i = 0; i < 3; ++i) momentum_body[i] = body.inertia[i] * state.omega_body[i];
-  to_space(a, momentum_body, momentum_space);
+  double momentum_space[3], momentum[3];
+  momentum_along_space(body, state, momentum_space);
   Load damped = load;
   for (int i = 0; i < 3; ++i) momentum[i] = body.mass * state.velocity[i];
   for (int i = 0; i < 3; ++i) {

@@ -27,7 +27,15 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-enum class Formulation { FIRST, SECOND };
+/// FIRST and SECOND: those of the paper.  MOMENTUM: positions as in SECOND, and angular momenta.
+enum class Formulation { FIRST, SECOND, MOMENTUM };
+
+/// The word of keyword formulation.
+inline const char *word_of(Formulation formulation)
+{
+  constexpr const char *WORDS[] = {"first", "second", "momentum"};
+  return WORDS[(int) formulation];
+}
 
 /// Treatment of the length of quaternions.  YES: they are projected after every step.  NO: they are
 /// not projected, and formulas assume |q| = 1 (as in the paper).  AUTO: equations for any length
@@ -48,6 +56,7 @@ struct Scheme {
   bool trial = false;         ///< one more row, see gear_quat_step_control.h
 
   bool first() const { return formulation == Formulation::FIRST; }
+  bool momentum() const { return formulation == Formulation::MOMENTUM; }
   int values() const { return rows ? rows : first() ? FIRST_PAPER : SECOND_PAPER; }
   int width() const { return first() ? FIRST_WIDTH : SECOND_WIDTH; }
   /// True if quaternions obey equations for any length.  Even numbers of values are excluded
@@ -56,7 +65,8 @@ struct Scheme {
   bool any_norm() const
   {
     const int n = values();
-    return projection == Projection::AUTO && !first() && tuned && n % 2 == 1 && n < 11;
+    return projection == Projection::AUTO && formulation == Formulation::SECOND && tuned &&
+        n % 2 == 1 && n < 11;
   }
   /// Passes of a body.  If passes is 0, a rotation with any_norm() is corrected until it converges.
   int fixed_passes() const { return passes ? passes : AUTOMATIC_PASSES; }
@@ -67,7 +77,8 @@ struct Scheme {
   /// bodies unstable earlier.
   int coupled_passes() const
   {
-    return passes == 0 && any_norm() && values() < 9 ? CONVERGING_PASSES : fixed_passes();
+    const bool converging = momentum() || (any_norm() && values() < 9);
+    return passes == 0 && converging ? CONVERGING_PASSES : fixed_passes();
   }
   static constexpr int AUTOMATIC_PASSES = 2, CONVERGING_PASSES = 3;
   int carries() const { return compensate ? (first() ? 1 : 2) : 0; }
@@ -88,6 +99,9 @@ struct Scheme {
   static constexpr int FIRST_QUATERNION = 6, SECOND_QUATERNION = 3;
   int quaternion() const { return first() ? FIRST_QUATERNION : SECOND_QUATERNION; }
   static constexpr int OMEGA = 10;    ///< first only
+  /// MOMENTUM: row 0 has the quaternion, as in SECOND, and row j > 0 has h^j/j! L^(j-1) in the
+  /// first three of these columns, with the angular momentum L along the axes of space.
+  static constexpr int ANGULAR_MOMENTUM = SECOND_QUATERNION;
 
   /// The divisor of q for a unit quaternion.  Without projection, the paper's formulas are used as
   /// they are, and a body is rigid only to the accuracy of |q| = 1.
@@ -119,48 +133,49 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
 
   /// Advance the history by one step: the Taylor series (Eq. 11) as additions of Pascal's triangle.
   /// After the call row j holds h^j/j! times the j-th derivative of the same polynomial at t + h.
-  /// n: 3 to 12, for both formulations.  COUNT: components from the first on; the others do not
-  /// change.
-  template <int COUNT = WIDTH> static void predict(double *rows, int n)
+  /// n: 3 to 12, for all formulations.  COUNT: components from the first on; the others do not
+  /// change.  LOWEST: the first row that changes.
+  template <int COUNT = WIDTH, int LOWEST = 0> static void predict(double *rows, int n)
   {
     switch (n) {    // a number of rows known at compile time, so that a column stays in registers
       case 3:
-        return pascal<3, COUNT>(rows);
+        return pascal<3, COUNT, LOWEST>(rows);
       case 4:
-        return pascal<4, COUNT>(rows);
+        return pascal<4, COUNT, LOWEST>(rows);
       case 5:
-        return pascal<5, COUNT>(rows);
+        return pascal<5, COUNT, LOWEST>(rows);
       case 6:
-        return pascal<6, COUNT>(rows);
+        return pascal<6, COUNT, LOWEST>(rows);
       case 7:
-        return pascal<7, COUNT>(rows);
+        return pascal<7, COUNT, LOWEST>(rows);
       case 8:
-        return pascal<8, COUNT>(rows);
+        return pascal<8, COUNT, LOWEST>(rows);
       case 9:
-        return pascal<9, COUNT>(rows);
+        return pascal<9, COUNT, LOWEST>(rows);
       case 10:
-        return pascal<10, COUNT>(rows);
+        return pascal<10, COUNT, LOWEST>(rows);
       case 11:
-        return pascal<11, COUNT>(rows);
+        return pascal<11, COUNT, LOWEST>(rows);
       case 12:
-        return pascal<12, COUNT>(rows);
+        return pascal<12, COUNT, LOWEST>(rows);
     }
   }
 
-  /// Feed the residual of COUNT components, the first at `component`, back into every row.
-  template <int COUNT>
+  /// Feed the residual of COUNT components, the first at `component`, back into every row from row
+  /// LOWEST on.
+  template <int COUNT, int LOWEST = 0>
   static void correct(double *rows, int n, const double *coefficients, int component,
                       const double *residual)
   {
     double r[COUNT];    // a copy: residual may alias `rows`
 #pragma GCC unroll 4
     for (int c = 0; c < COUNT; ++c) r[c] = residual[c];
-    for (int j = 0; j < CARRIES; ++j) {
+    for (int j = LOWEST; j < CARRIES; ++j) {
       double value[COUNT];
       for (int c = 0; c < COUNT; ++c) value[c] = coefficients[j] * r[c];
       add<COUNT>(rows, n, j, component, value);
     }
-    for (int j = CARRIES; j < n; ++j) {
+    for (int j = std::max(LOWEST, CARRIES); j < n; ++j) {
       const double coefficient = coefficients[j];
       double *row = rows + j * WIDTH + component;
 #pragma GCC unroll 4
@@ -197,7 +212,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   }
 
   // unrolled by name: LAMMPS is mostly built with -O2, which does not unroll loops
-  template <int N, int COUNT> static void pascal(double *rows)
+  template <int N, int COUNT, int LOWEST> static void pascal(double *rows)
   {
     for (int c = 0; c < COUNT; ++c) {
       double y[N], carry[CARRIES + 1];
@@ -208,7 +223,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
 #pragma GCC unroll 12
       for (int pass = 0; pass < N - 1; ++pass)
 #pragma GCC unroll 12
-        for (int j = N - 2; j >= pass; --j)
+        for (int j = N - 2; j >= std::max(pass, LOWEST); --j)
           if (j < CARRIES)
             add_exactly(y[j], carry[j], y[j + 1]);
           else
@@ -249,7 +264,9 @@ class Kinematics {
   void body_state(const RigidBody &body, const double *rows, BodyState &state,
                   BodyFrame &frame) const
   {
-    if (scheme.first())
+    if (scheme.momentum())
+      find_state<Formulation::MOMENTUM>(body, rows, state, frame);
+    else if (scheme.first())
       find_state<Formulation::FIRST>(body, rows, state, frame);
     else
       find_state<Formulation::SECOND>(body, rows, state, frame);
@@ -275,6 +292,10 @@ class Kinematics {
   void set_velocities(const RigidBody &body, const BodyState &state, const Load &load,
                       double *rows) const
   {
+    if (scheme.momentum()) {
+      set_momenta(body, state, rows);
+      return;
+    }
     const int width = scheme.width(), quat = scheme.quaternion(), row = scheme.first() ? 0 : 1;
     double *rates = rows + width, *qddot = rates + width + quat;
     double omegadot_body[3], qdot[4], now[4], kept[4] = {};
@@ -314,7 +335,7 @@ class Kinematics {
   double radial_rate(const double *rows) const
   {
     const double *q = rows + scheme.quaternion();
-    return dot4(q, q + scheme.width()) / h;
+    return scheme.momentum() ? 0.0 : dot4(q, q + scheme.width()) / h;
   }
 
   /// The rotation matrix A of the orientation in a history.
@@ -336,7 +357,31 @@ class Kinematics {
     for (int i = 0; i < n; ++i) to[i] = from[i];
   }
 
+  /// omega = I^-1 A L; momentum: h L along the axes of space.
+  void omega_of(const RigidBody &body, const double *axes, const double *momentum,
+                double *omega_body) const
+  {
+    double per_inertia[3], along[3];
+    inverse_moments(body, per_inertia);
+    to_body(axes, momentum, along);
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) omega_body[i] = per_h * per_inertia[i] * along[i];
+  }
+
  private:
+  /// set_velocities() of formulation momentum: accelerations do not depend on velocities.
+  void set_momenta(const RigidBody &body, const BodyState &state, double *rows) const
+  {
+    double momentum[3], *rates = rows + scheme.width();
+    momentum_along_space(body, state, momentum);
+    for (int i = 0; i < 3; ++i) {
+      rates[Scheme::POSITION + i] = h * state.velocity[i];
+      rates[Scheme::ANGULAR_MOMENTUM + i] = h * momentum[i];
+    }
+    if (scheme.compensate)
+      std::fill_n(rows + (scheme.values() + 1) * scheme.width(), scheme.width(), 0.0);
+  }
+
   /// All values are read before any is written: the output may alias `rows`.
   template <Formulation FORM>
   void find_state(const RigidBody &body, const double *rows, BodyState &state,
@@ -353,16 +398,20 @@ class Kinematics {
       for (int i = 0; i < 3; ++i) velocity[i] = rows[Scheme::MOMENTUM + i] / body.mass;
       copy(rows + Scheme::OMEGA, 3, omega_body);
     } else {
-      double qdot[4];
       for (int i = 0; i < 3; ++i) velocity[i] = rates[Scheme::POSITION + i] * per_h;
+    }
+    if (FORM == Formulation::SECOND) {
+      double qdot[4];
       for (int i = 0; i < 4; ++i) qdot[i] = rates[QUATERNION + i] * per_h;
       angular_velocity(q, norm2, qdot, omega_body);
     }
     copy(center, 3, state.center);
     copy(q, 4, state.q);
     copy(velocity, 3, state.velocity);
-    copy(omega_body, 3, state.omega_body);
     rotation_matrix(q, norm2, frame.axes);
+    if (FORM == Formulation::MOMENTUM)
+      omega_of(body, frame.axes, rates + Scheme::ANGULAR_MOMENTUM, omega_body);
+    copy(omega_body, 3, state.omega_body);
     to_space(frame.axes, omega_body, frame.omega_space);
   }
 };

@@ -12,9 +12,16 @@
      x' = p/m,  p' = F,  q' = 1/2 W(q) omega,  omega' from Euler's equations
    Second-order formulation (Rapaport), 7 components:
      x'' = F/m,  q'' = 1/2 W(q) (omega', -2 q'.q')
-   With Scheme::any_norm() gear_quat_any_norm.h replaces the second equation.  Equation numbers:
-   Pratt & Bin Mohamad Zaini.  Once per step the host calls predict(), body_state(), [forces] and
-   correct(), or for a body without moments of inertia the functions whose names end in center. */
+  With Scheme::any_norm() gear_quat_any_norm.h replaces the second equation.
+   Momentum formulation, 6 components and the quaternion:
+     x'' = F/m,  L' = torque along the axes of space
+   The quaternion turns exactly with the predicted L(t) (gear_quat_turn.h), then by the small
+   rotation I^-1 A c_0 r with the residual r of the rows of L.  These have the coefficients of the
+   rows of x, of which L' is the second derivative: the angles follow L as x follows x'.
+
+   Equation numbers: Pratt & Bin Mohamad Zaini.  Once per step the host calls predict(),
+   body_state(), [forces] and correct(), or for a body without moments of inertia the functions
+   whose names end in center. */
 
 #ifndef GEAR_QUAT_INTEGRATOR_H
 #define GEAR_QUAT_INTEGRATOR_H
@@ -23,6 +30,7 @@
 #include "gear_quat_gauss.h"
 #include "gear_quat_history.h"
 #include "gear_quat_tuned.h"
+#include "gear_quat_turn.h"
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -50,10 +58,10 @@ class Integrator : public Kinematics {
 
   int values() const { return n; }
 
-  void predict(double *rows) const
+  void predict(const RigidBody &body, double *rows) const
   {
     with_history([&](auto history) {
-      history.predict(rows, n);
+      predict(history, body, rows);
     });
   }
 
@@ -83,7 +91,7 @@ class Integrator : public Kinematics {
     with_history([&](auto history) {
       correct_all(history, body, load, rows, pending);
     });
-    return conclude(load, rows, pending);
+    return conclude(body, load, rows, pending);
   }
   Correction correct(const RigidBody &body, const Load &load, double *rows) const
   {
@@ -94,7 +102,8 @@ class Integrator : public Kinematics {
   // pass, finish(), and in the first-order form also scale_momenta().
 
   struct Residual {    ///< summed over the passes
-    double x[3], q[4];
+    double x[3];
+    double q[4];    ///< formulation momentum: of L, three components
   };
   /// The part of the prediction that a correction needs.
   struct Pending {
@@ -140,6 +149,11 @@ class Integrator : public Kinematics {
     if (scheme.first()) {
       for (int i = 0; i < 3; ++i) velocity[i] = rows[Scheme::MOMENTUM + i] / body.mass;
       copy(rows + Scheme::OMEGA, 3, omega_body);
+    } else if (scheme.momentum()) {
+      double momentum[3];
+      momentum_of_pass(rows, pending.total.q, momentum);
+      velocity_of_pass(rows, pending.total.x, velocity);
+      omega_of(body, axes_of(rows).data(), momentum, omega_body);
     } else {
       double q[4], qdot[4];
       velocity_of_pass(rows, pending.total.x, velocity);
@@ -149,12 +163,13 @@ class Integrator : public Kinematics {
   }
 
   /// Projects |q| = 1 and, in the second-order form, q.qdot = 0.
-  Correction finish(const Load &load, double *rows, const Pending &pending) const
+  Correction finish(const RigidBody &body, const Load &load, double *rows,
+                    const Pending &pending) const
   {
     with_history([&](auto history) {
-      finish_passes(history, rows, pending);
+      finish_passes(history, body, rows, pending);
     });
-    return conclude(load, rows, pending);
+    return conclude(body, load, rows, pending);
   }
 
   /// A rotation about an axis without inertia does not change: it has no momentum.
@@ -191,16 +206,38 @@ class Integrator : public Kinematics {
  private:
   template <int CARRIES> using First = Nordsieck<Scheme::FIRST_WIDTH, CARRIES>;
   template <int CARRIES> using Second = Nordsieck<Scheme::SECOND_WIDTH, CARRIES>;
+  template <int CARRIES> struct Momenta : Second<CARRIES> {
+  };
 
   /// Columns of the center, which come first.
   template <int CARRIES> static constexpr int center_columns(First<CARRIES>) { return 6; }
   template <int CARRIES> static constexpr int center_columns(Second<CARRIES>) { return 3; }
+
+  template <class History> void predict(History history, const RigidBody &, double *rows) const
+  {
+    history.predict(rows, n);
+  }
+
+  template <int CARRIES>
+  void predict(Momenta<CARRIES> history, const RigidBody &body, double *rows) const
+  {
+    Turn::Momentum momentum;
+    double *columns = rows + Scheme::ANGULAR_MOMENTUM;
+    for (int k = 0; k + 1 < n; ++k)
+      for (int i = 0; i < 3; ++i)
+        momentum[k][i] = (k + 1) * columns[(k + 1) * Scheme::SECOND_WIDTH + i];
+    Turn::advance(body, momentum, n - 1, n + 1, rows + Scheme::SECOND_QUATERNION);
+    history.template predict<3>(rows, n);
+    history.template predict<3, 1>(columns, n);
+  }
 
   /// Calls act with the kind of history that this scheme has.
   template <class Act> void with_history(Act act) const
   {
     if (scheme.first())
       with_first(act);
+    else if (scheme.momentum())
+      scheme.compensate ? act(Momenta<2>()) : act(Momenta<0>());
     else
       scheme.compensate ? act(Second<2>()) : act(Second<0>());
   }
@@ -290,7 +327,7 @@ class Integrator : public Kinematics {
   }
 
   template <int CARRIES>
-  void finish_passes(First<CARRIES> history, double *rows, const Pending &) const
+  void finish_passes(First<CARRIES> history, const RigidBody &, double *rows, const Pending &) const
   {
     if (scheme.projection != Projection::NO) project_row(history, rows);
   }
@@ -302,7 +339,8 @@ class Integrator : public Kinematics {
     });
   }
 
-  Correction conclude(const Load &load, const double *rows, const Pending &pending) const
+  Correction conclude(const RigidBody &body, const Load &load, const double *rows,
+                      const Pending &pending) const
   {
     const double *q = rows + scheme.quaternion();
     double dx[3], dq[4], angle_body[3];
@@ -310,8 +348,84 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 4; ++i) dq[i] = q[i] - pending.q[i];
     angular_velocity(pending.q, dot4(pending.q, pending.q), dq, angle_body);
     const Residual &total = pending.total;
+    double turned2;
+    if (scheme.momentum()) {
+      turn_of(body, pending.q, total.q, 0.5, dq);
+      turned2 = dot3(dq, dq);
+    } else {
+      turned2 = any_norm.turning2(total.q, pending.q);
+    }
     return {dot3(load.force, dx) + dot3(pending.torque_body, angle_body),
-            c.weight2 * dot3(total.x, total.x), c.weight2 * any_norm.turning2(total.q, pending.q)};
+            c.weight2 * dot3(total.x, total.x), c.weight2 * turned2};
+  }
+
+  // the momentum formulation
+
+  /// factor I^-1 A r, along the principal axes.
+  static void turn_of(const RigidBody &body, const double *q, const double *residual, double factor,
+                      double *angle_body)
+  {
+    double a[9], per_inertia[3];
+    rotation_matrix(q, 1.0, a);
+    to_body(a, residual, angle_body);
+    inverse_moments(body, per_inertia);
+    for (int i = 0; i < 3; ++i) angle_body[i] *= factor * per_inertia[i];
+  }
+
+  void momentum_residual(const double *torque_space, const double *rows, double *residual) const
+  {
+    const double *seconds = rows + 2 * Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM;
+    const double half_h2 = 0.5 * h * h;
+    for (int i = 0; i < 3; ++i) residual[i] = half_h2 * torque_space[i] - seconds[i];
+  }
+
+  /// h L after the passes so far.
+  void momentum_of_pass(const double *rows, const double *total, double *momentum) const
+  {
+    const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM;
+    for (int i = 0; i < 3; ++i) momentum[i] = rates[i] + c.driven[1] * total[i];
+  }
+
+  template <int CARRIES>
+  void correct_all(Momenta<CARRIES> history, const RigidBody &body, const Load &load, double *rows,
+                   Pending &pending) const
+  {
+    position_residual(body, load, rows, pending.total.x);
+    momentum_residual(load.torque_space, rows, pending.total.q);
+    finish_passes(history, body, rows, pending);
+  }
+
+  template <int CARRIES, class Damper>
+  void pass(Momenta<CARRIES>, const RigidBody &body, const Load &load, const Damper &friction,
+            double *rows, Pending &pending) const
+  {
+    const double *rates = rows + Scheme::SECOND_WIDTH;
+    double damped[3], momentum[3];
+    pass_of_center(body, load, friction, rows, pending.total.x);
+    if (friction.implicit)
+      copy(rates + Scheme::ANGULAR_MOMENTUM, 3, momentum);
+    else
+      momentum_of_pass(rows, pending.total.q, momentum);
+    for (int i = 0; i < 3; ++i)
+      damped[i] = friction.torque(load.torque_space[i], per_h * momentum[i]);
+    momentum_residual(damped, rows, pending.total.q);
+    if (!friction.implicit) return;
+    const double part = friction.implicit_torque(0.5 * h * c.driven[1]);
+    for (int i = 0; i < 3; ++i) pending.total.q[i] *= part;
+  }
+
+  template <int CARRIES>
+  void finish_passes(Momenta<CARRIES> history, const RigidBody &body, double *rows,
+                     const Pending &pending) const
+  {
+    double *q = rows + Scheme::SECOND_QUATERNION, angle[3], change[4];
+    turn_of(body, q, pending.total.q, c.driven[0], angle);
+    history.template correct<3>(rows, n, c.driven.data(), Scheme::POSITION, pending.total.x);
+    history.template correct<3, 1>(rows, n, c.driven.data(), Scheme::ANGULAR_MOMENTUM,
+                                   pending.total.q);
+    quaternion_rate(q, angle, change);
+    history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
+    project_row(history, rows);
   }
 
   /// Positions (Eq. 17): forces are constant, so one pass is sufficient.
@@ -400,23 +514,32 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i) velocity[i] = (rates[i] + c.driven[1] * total[i]) * per_h;
   }
 
+  /// The residual of positions with a friction.
+  template <class Damper>
+  void pass_of_center(const RigidBody &body, const Load &load, const Damper &friction,
+                      const double *rows, double *total) const
+  {
+    const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::POSITION;
+    double velocity[3], momentum[3];
+    Load damped;
+    if (friction.implicit)
+      for (int i = 0; i < 3; ++i) velocity[i] = per_h * rates[i];
+    else
+      velocity_of_pass(rows, total, velocity);
+    for (int i = 0; i < 3; ++i) momentum[i] = body.mass * velocity[i];
+    for (int i = 0; i < 3; ++i)
+      damped.force[i] = friction.force(i, load.force[i], momentum, body.mass);
+    position_residual(body, damped, rows, total);
+    if (friction.implicit) friction.solve(0.5 * h * c.driven[1], 0.5 * h * h, total);
+  }
+
   /// Computes only residuals: rows stay predicted until finish_passes().
   template <int CARRIES, class Damper>
   void pass(Second<CARRIES>, const RigidBody &body, const Load &load, const Damper &friction,
             double *rows, Pending &pending) const
   {
-    const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::POSITION;
-    const double share = 0.5 * h * c.driven[1];
-    double velocity[3], momentum[3], per_inertia[3], before[4];
-    Load damped = load;
-    if (friction.implicit)
-      for (int i = 0; i < 3; ++i) velocity[i] = per_h * rates[i];
-    else
-      velocity_of_pass(rows, pending.total.x, velocity);
-    for (int i = 0; i < 3; ++i) momentum[i] = body.mass * velocity[i];
-    for (int i = 0; i < 3; ++i)
-      damped.force[i] = friction.force(i, load.force[i], momentum, body.mass);
-    position_residual(body, damped, rows, pending.total.x);
+    double per_inertia[3], before[4];
+    pass_of_center(body, load, friction, rows, pending.total.x);
     inverse_moments(body, per_inertia);
     const double part = any_norm.projected_part(rows);
     double *total = pending.total.q;
@@ -432,10 +555,9 @@ class Integrator : public Kinematics {
       pending.converged = true;
       return;
     }
-    friction.solve(share, 0.5 * h * h, pending.total.x);
     copy(total, 4, before);
     turn();
-    withhold(body, rows, before, 1.0 - friction.implicit_torque(share), total);
+    withhold(body, rows, before, 1.0 - friction.implicit_torque(0.5 * h * c.driven[1]), total);
   }
 
   /// Reduces the change of a residual to account for friction.  The radial part, which conserves
@@ -453,7 +575,8 @@ class Integrator : public Kinematics {
   }
 
   template <int CARRIES>
-  void finish_passes(Second<CARRIES> history, double *rows, const Pending &pending) const
+  void finish_passes(Second<CARRIES> history, const RigidBody &, double *rows,
+                     const Pending &pending) const
   {
     double residual[Scheme::SECOND_WIDTH];
     copy(pending.total.x, 3, residual + Scheme::POSITION);

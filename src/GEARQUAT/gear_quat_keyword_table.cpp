@@ -45,8 +45,10 @@ static Keyword pressure(const char *name, const char *meaning, Keyword::Store st
 static const std::vector<Keyword> TABLE = {
   Keyword("formulation", INTEGRATION, "which equations of motion are integrated",
           [](Arguments &a, const Value &v) {
-            a.scheme.formulation = v.is("first") ? Formulation::FIRST : Formulation::SECOND;
-          }).word({"second", "first"}),
+            a.scheme.formulation = v.is("first") ? Formulation::FIRST
+                : v.is("second")                 ? Formulation::SECOND
+                                                 : Formulation::MOMENTUM;
+          }).word({"second", "first", "momentum"}),
   Keyword("values", INTEGRATION, "how many values a history keeps of each function",
           [](Arguments &a, const Value &v) { a.scheme.rows = v.integer; })
       .integer({{SECOND_FEWEST, SECOND_MOST, 9, 8}, {FIRST_FEWEST, FIRST_MOST, 8, 6}}, VARIABLE_MOST)

@@ -55,7 +55,8 @@ inline BodyState kicked(const RigidBody &body, const BodyState &before, const Lo
 /// for free tops.  Even numbers are stable.
 inline bool is_unstable_with_single_pass(const Scheme &scheme)
 {
-  return scheme.passes == 1 && scheme.tuned && !scheme.first() && scheme.values() % 2 == 1;
+  return scheme.passes == 1 && scheme.tuned && scheme.formulation == Formulation::SECOND &&
+      scheme.values() % 2 == 1;
 }
 
 constexpr int FLIGHT_STEPS = 100, LONG_FLIGHT_STEPS = 5000;
@@ -78,7 +79,7 @@ inline bool survives_flight(const Scheme &scheme, const RigidBody &body, const B
   if (!limits.keep(still)) return false;
   seed(scheme, body, local_series(body, still, none, h), h, h, rows);
   for (int step = 0; step < steps; ++step) {
-    integrator.predict(rows);
+    integrator.predict(body, rows);
     if (!limits.keep_velocities(integrator.body_state(body, rows))) return false;
     integrator.correct(body, none, rows);
     if (!limits.keep(integrator.body_state(body, rows))) return false;
@@ -112,7 +113,7 @@ inline double fastest_oscillation(const Scheme &scheme)
       {0.86, 0.36, 0.22, 0.26, 0.20, 0.12},                            // with predicted momentum
   };
   const bool other = scheme.first() ? scheme.predicted_momentum
-      : scheme.tuned                ? scheme.any_norm()
+      : scheme.tuned                ? scheme.any_norm() || scheme.momentum()
                                     : scheme.velocity_c0;
   return FASTEST[4 * scheme.first() + 2 * scheme.tuned + other][scheme.values() - FEWEST];
 }

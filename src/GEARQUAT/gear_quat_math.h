@@ -318,6 +318,15 @@ inline void angular_acceleration(const RigidBody &body, const BodyState &state, 
   angular_acceleration(body, torque_body, state.omega_body, omegadot_body);
 }
 
+/// The angular momentum along the axes of space, A^T I omega.
+inline void momentum_along_space(const RigidBody &body, const BodyState &state, double *momentum)
+{
+  double a[9], along[3];
+  rotation_matrix(state.q, dot4(state.q, state.q), a);
+  for (int i = 0; i < 3; ++i) along[i] = body.inertia[i] * state.omega_body[i];
+  to_space(a, along, momentum);
+}
+
 /// A bit for each component that is off; 0: all components act.
 using Mask = int;
 

@@ -362,7 +362,7 @@ Motion::Settings Motion::settings() const
   for (int k = 0; k < 3 && box.any(); ++k)
     components |= box.tied[k] << (PressureWords::COMPONENTS + 2 * k);
   Settings found = {};
-  found.formulation = scheme.first();
+  found.formulation = (double) scheme.formulation;
   found.values = scheme.values();
   found.compensate = scheme.compensate;
   found.tolerance = scheme.trial;

@@ -106,7 +106,7 @@ void Motion::warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &schem
   const std::string who = scene.chooses_longest(scheme)
       ? "any number of values"
       : fmt::format("{} values of formulation {} and corrector {}", scheme.values(),
-                    scheme.first() ? "first" : "second", scheme.tuned ? "tuned" : "gear");
+                    word_of(scheme.formulation), scheme.tuned ? "tuned" : "gear");
   const char *otherwise = "";
   if (begins)
     otherwise = ", or, if atoms overlap, begin with a run with keywords tolerance and temp";
@@ -197,7 +197,7 @@ void Motion::adopt_scheme(Fields &file)
   file(of_file);
   Scheme scheme = args.scheme;
   if (step.tolerance || of_file.tolerance != 0.0 || !of_file.started ||
-      of_file.formulation != (double) scheme.first())
+      of_file.formulation != (double) scheme.formulation)
     return;
   if (args.automatic_values) scheme.rows = (int) of_file.values;
   if (scheme.values() != of_file.values) return;

@@ -309,7 +309,7 @@ static std::string settings(const Arguments &args)
       ? fmt::format("{} pass{}", scheme.passes, scheme.passes == 1 ? "" : "es")
       : "passes auto";
   return fmt::format("  formulation {}, {}, {}, corrector {}\n",
-                     scheme.first() ? "first" : "second", values, passes,
+                     word_of(scheme.formulation), values, passes,
                      scheme.tuned ? "tuned" : "gear");
 }
 

@@ -54,7 +54,7 @@ void GearQuat::seed_body(Bodies &bodies, int ibody, const BodyState &state, cons
 {
   const RigidBody &rigid = bodies.rigid_of(ibody);
   auto series = local_series(rigid, state, acting, h);
-  series.terms = terms;
+  series.terms = series.terms_of_q = terms;
   seed(scheme, rigid, series, h, h, bodies.history(ibody));
 }
 
@@ -178,6 +178,7 @@ struct Start::Search {
       one.work.begin(bodies.nmoved());
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
         our.collocation.begin(
+            bodies.rigid_of(ibody),
             local_series(bodies.rigid_of(ibody), one.scaled(ibody), one.acting(ibody), spacing),
             one.work[ibody]);
     }
@@ -311,21 +312,23 @@ StartFound Start::search(Forces &forces)
   return start;
 }
 
-/// Node spacing: the step, shortened if necessary to keep every site within half the skin.
+/// Node spacing: the step, shortened if necessary to keep every site within half the skin, and the
+/// rotation of every body from its outermost node below 1.5 radians.
 double Start::first_spacing() const
 {
-  const double span = collocation.pairs() * std::fabs(h);
-  double fastest = 0.0;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (std::none_of(starters.begin(), starters.end(), [i](const Starter &one) {
+  constexpr double LARGEST_TURN = 1.5;
+  const double span = collocation.pairs() * std::fabs(h), reach = 0.25 * neighbor->skin;
+  double longest = 1.0;    // in units of these limits
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (std::any_of(starters.begin(), starters.end(), [i](const Starter &one) {
           return one.ownership->in_body(i);
         }))
-      continue;
-    fastest = std::max(fastest, dot3(atom->v[i], atom->v[i]));
-  }
-  const double way = span * std::sqrt(over_ranks(MPI_MAX, fastest, world));
-  const double reach = 0.25 * neighbor->skin;
-  return way > reach ? h * reach / way : h;
+      longest = std::max(longest, span * length(atom->v[i]) / reach);
+  for (const auto &one : starters)
+    for (int ibody = 0; ibody < one.bodies->nowned(); ++ibody)
+      longest = std::max(longest,
+                         span * length(one.bodies->state_of(ibody).omega_body) / LARGEST_TURN);
+  return h / over_ranks(MPI_MAX, longest, world);
 }
 
 /// Sums from the derivatives of this number of pairs, with the states of the start.

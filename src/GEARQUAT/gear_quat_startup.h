@@ -5,14 +5,14 @@
 
 /* Start-up: the higher rows of a history.
 
-   A history starts from the Taylor series of the trajectory in x and q,
-     x(t) = sum_j X_j (t/H)^j,   q(t) = sum_j Q_j (t/H)^j,
+   A history starts from the Taylor series of the trajectory in x, q and the angular momentum L,
+     x(t) = sum_j X_j (t/H)^j,   q(t) = sum_j Q_j (t/H)^j,   H L(t) = sum_j L_j (t/H)^j,
    with a number of known `terms`: 2 (position and velocity: the paper's zero start), 3 (forces
-   too), or the number found by collocation.
+   too), or the number found by collocation.  L has one term less.
 
-   Collocation: the second derivatives at the nodes t = k H, k = -m..m, are interpolated by one
-   polynomial; integrating it twice from the exact start gives the state at a node, and the forces
-   there give new second derivatives (Picard iteration).  Pairs of nodes are added outwards: each is
+   Collocation: forces and torques at the nodes t = k H, k = -m..m, are interpolated by one
+   polynomial; integrating it from the exact start gives x, v and L at a node, q turns with L
+   (gear_quat_turn.h), and the forces there replace those of the polynomial (Picard iteration).  Pairs of nodes are added outwards: each is
    extrapolated by the polynomial through the nodes inside it.  Rows 0 and 1 stay exact: no
    difference of positions enters a velocity.  The start is symmetric under time reversal, because
    the nodes on both sides are treated equally.
@@ -188,11 +188,14 @@ template <class Host> StartFound find_start(int values, double spacing, Host &ho
 
 /* ---------------------------------------------------------------------- */
 
-/// Taylor series of one body's x (columns 0-2) and q (columns 3-6) in units of a step.
+/// Taylor series of one body's x (columns 0-2) and q (columns 3-6) in units of a step, and of its
+/// angular momentum times the step, along the axes of space.
 struct TaylorSeries {
   static constexpr int MAX_TERMS = MAX_VALUES + 3;
   int terms = 0;
+  int terms_of_q = 0;    ///< more than of x: L determines them
   double c[MAX_TERMS][7];
+  Turn::Momentum momentum;
 };
 
 /// The three terms determined by a state and its load, in units of the step h.
@@ -200,12 +203,15 @@ inline TaylorSeries local_series(const RigidBody &body, const BodyState &state, 
                                  double h)
 {
   TaylorSeries series;
-  series.terms = 3;
+  series.terms = series.terms_of_q = 3;
   double omegadot_body[3], qdot[4], qddot[4];
   angular_acceleration(body, state, dot4(state.q, state.q), load, omegadot_body);
   quaternion_rate(state.q, state.omega_body, qdot);
   quaternion_acceleration(state.q, qdot, omegadot_body, qddot);
+  momentum_along_space(body, state, series.momentum[0]);
   for (int i = 0; i < 3; ++i) {
+    series.momentum[0][i] *= h;
+    series.momentum[1][i] = h * h * load.torque_space[i];
     series.c[0][i] = state.center[i];
     series.c[1][i] = h * state.velocity[i];
     series.c[2][i] = 0.5 * h * h * load.force[i] / body.mass;
@@ -228,17 +234,22 @@ inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries
   for (int i = 0; i < scheme.size(); ++i) rows[i] = 0.0;
 
   double power = 1.0;
-  for (int j = 0; j < n && j < series.terms; ++j, power *= ratio) {
+  for (int j = 0; j < n && j < series.terms_of_q; ++j, power *= ratio) {
     double *row = rows + j * width;
-    for (int i = 0; i < 3; ++i) row[Scheme::POSITION + i] = power * series.c[j][i];
-    for (int i = 0; i < 4; ++i) row[quat + i] = power * series.c[j][3 + i];
+    const bool known = j < series.terms;
+    for (int i = 0; i < 3 && known; ++i) row[Scheme::POSITION + i] = power * series.c[j][i];
+    if (!scheme.momentum() || j == 0)
+      for (int i = 0; i < 4; ++i) row[quat + i] = power * series.c[j][3 + i];
+    else if (known)
+      for (int i = 0; i < 3; ++i)
+        row[Scheme::ANGULAR_MOMENTUM + i] = power / j * series.momentum[j - 1][i];
   }
   if (!scheme.first()) return;
 
   // p = m x' and omega = 2 W(q)^T q', term by term
 
   power = 1.0 / series_step;
-  for (int j = 0; j < n && j + 1 < series.terms; ++j, power *= ratio) {
+  for (int j = 0; j < n && j + 1 < series.terms_of_q; ++j, power *= ratio) {
     double *row = rows + j * width;
     for (int i = 0; i < 3; ++i)
       row[Scheme::MOMENTUM + i] = power * body.mass * (j + 1) * series.c[j + 1][i];
@@ -265,8 +276,11 @@ class Collocation {
     double rate[MAX_NODES][WIDTH];    ///< node k in row pairs() + k
     double met[2][WIDTH];             ///< at the two nodes that are being evaluated
   };
-  /// x and q of a body.
-  using Workspace = Nodes<7, 2>;
+  /// x of a body in columns 0-2; columns 3-5 have the integral of its angular momentum.
+  struct Workspace : Nodes<6, 2> {
+    RigidBody body;
+    double q[4];    ///< at the start
+  };
   using Scalar = Nodes<1, 1>;
 
   /// Uses the number of nodes required by the order of a history with `values` rows.
@@ -280,13 +294,18 @@ class Collocation {
 
   /// Begins without pairs: with constant second derivatives, taken from `series` (at least three
   /// terms, in units of the node spacing).
-  void begin(const TaylorSeries &series, Workspace &w) const
+  void begin(const RigidBody &body, const TaylorSeries &series, Workspace &w) const
   {
     w.pairs = 0;
-    for (int i = 0; i < 7; ++i) {
+    w.body = body;
+    std::copy_n(series.c[0] + 3, 4, w.q);
+    for (int i = 0; i < 3; ++i) {
       w.start[0][i] = series.c[0][i];
       w.start[1][i] = series.c[1][i];
       w.rate[half][i] = 2.0 * series.c[2][i];
+      w.start[0][3 + i] = 0.0;
+      w.start[1][3 + i] = series.momentum[0][i];
+      w.rate[half][3 + i] = series.momentum[1][i];
     }
   }
 
@@ -342,16 +361,21 @@ class Collocation {
   /// State of the body at a known node by the present polynomial; spacing: time between nodes.
   BodyState state_at(int node, const Workspace &w, double spacing) const
   {
-    double value[7], rate[7];
+    double value[6], rate[6], axes[9];
     values_at(node, w, value, rate);
     BodyState state;
     for (int i = 0; i < 3; ++i) {
       state.center[i] = value[i];
       state.velocity[i] = rate[i] / spacing;
     }
-    for (int i = 0; i < 4; ++i) state.q[i] = value[3 + i];
-    angular_velocity(state.q, dot4(state.q, state.q), rate + 3, state.omega_body);
-    for (int i = 0; i < 3; ++i) state.omega_body[i] /= spacing;
+    Turn::Momentum momentum;
+    const int terms = momentum_of(w, w.pairs, node, momentum);
+    std::copy_n(w.q, 4, state.q);
+    Turn::advance(w.body, momentum, terms, terms + 1, state.q);
+    rotation_matrix(state.q, 1.0, axes);
+    to_body(axes, rate + 3, state.omega_body);
+    for (int i = 0; i < 3; ++i)
+      state.omega_body[i] *= w.body.inertia[i] > 0.0 ? 1.0 / (spacing * w.body.inertia[i]) : 0.0;
     return state;
   }
 
@@ -361,16 +385,16 @@ class Collocation {
   double set_load(int node, const RigidBody &body, const BodyState &state, const Load &load,
                   double spacing, double length, Workspace &w) const
   {
-    BodyState unit = state;
-    project_norm(unit.q);
-    const TaylorSeries series = local_series(body, unit, load, spacing);
-    double *met = w.met[node > 0], change[7];
-    for (int i = 0; i < 7; ++i) {
-      met[i] = 2.0 * series.c[2][i];
+    double *met = w.met[node > 0], change[6];
+    for (int i = 0; i < 3; ++i) {
+      met[i] = spacing * spacing * load.force[i] / body.mass;
+      met[3 + i] = spacing * spacing * load.torque_space[i];
+    }
+    for (int i = 0; i < 6; ++i) {
       if (!std::isfinite(met[i])) return std::numeric_limits<double>::infinity();
       change[i] = met[i] - w.rate[half + node][i];
     }
-    return relative(change, met, length, w);
+    return relative(change, met, state, length, w);
   }
 
   /// Stores the rate of a scalar at a node.
@@ -398,9 +422,17 @@ class Collocation {
   TaylorSeries series(const Workspace &w, int pairs) const
   {
     TaylorSeries series;
+    double c[TaylorSeries::MAX_TERMS][6], q[Turn::MOST + 1][4];
     series.terms = terms_of(pairs);
     static_assert(MAX_NODES + 2 <= TaylorSeries::MAX_TERMS, "series too short for the nodes");
-    expand(w, pairs, series.c[0]);
+    expand<6>(w, pairs, c[0]);
+    const int terms = momentum_of(w, pairs, 1, series.momentum);
+    series.terms_of_q = TaylorSeries::MAX_TERMS;
+    Turn::coefficients(w.body, series.momentum, terms, w.q, q);
+    for (int j = 0; j < TaylorSeries::MAX_TERMS; ++j) {
+      for (int i = 0; i < 3; ++i) series.c[j][i] = j < series.terms ? c[j][i] : 0.0;
+      std::copy_n(q[j], 4, series.c[j] + 3);
+    }
     return series;
   }
   /// The series of any functions: c[WIDTH * j + i] for term j of function i.
@@ -497,14 +529,32 @@ class Collocation {
     return sum;
   }
 
-  static double relative(const double *change, const double *second, double length,
-                         const Workspace &w)
+  /// The series of L times `spacings` of the nodes, in units of this time.  Returns its terms.
+  int momentum_of(const Workspace &w, int pairs, double spacings, Turn::Momentum &found) const
   {
-    double part[2] = {0.0, 0.0}, scale[2] = {SMALLEST * length, SMALLEST};
-    for (int i = 0; i < 7; ++i) {
-      const int p = i < 3 ? 0 : 1;
-      part[p] = std::max(part[p], std::fabs(change[i]));
-      scale[p] = std::max({scale[p], std::fabs(w.start[1][i]), std::fabs(second[i])});
+    double c[TaylorSeries::MAX_TERMS][6], power = spacings;
+    expand<6>(w, pairs, c[0]);
+    const int terms = terms_of(pairs) - 1;
+    for (int k = 0; k < terms; ++k, power *= spacings)
+      for (int i = 0; i < 3; ++i) found[k][i] = power * (k + 1) * c[k + 1][3 + i];
+    return terms;
+  }
+
+  static double relative(const double *change, const double *second, const BodyState &state,
+                         double length, const Workspace &w)
+  {
+    double part[2] = {0.0, 0.0}, scale[2] = {SMALLEST * length, SMALLEST}, axes[9];
+    rotation_matrix(state.q, dot4(state.q, state.q), axes);
+    for (int p = 0; p < 2; ++p) {
+      double of[3][3];
+      const double *from[] = {change + 3 * p, w.start[1] + 3 * p, second + 3 * p};
+      for (int k = 0; k < 3; ++k)
+        p == 0 ? (void) std::copy_n(from[k], 3, of[k]) : to_body(axes, from[k], of[k]);
+      for (int i = 0; i < 3; ++i) {
+        const double unit = p == 0 ? 1.0 : w.body.inertia[i] > 0.0 ? 0.5 / w.body.inertia[i] : 0.0;
+        part[p] = std::max(part[p], unit * std::fabs(of[0][i]));
+        scale[p] = std::max({scale[p], unit * std::fabs(of[1][i]), unit * std::fabs(of[2][i])});
+      }
     }
     return std::max(part[0] / scale[0], part[1] / scale[1]);
   }

@@ -147,7 +147,7 @@ void Step::predict(double **f)
   }
   for (const int ibody : bodies.tops) {
     double *rows = bodies.history(ibody);
-    integrator->predict(rows);
+    integrator->predict(bodies.rigid_of(ibody), rows);
     integrator->body_state(bodies.rigid_of(ibody), seen(rows), bodies.change_state(ibody),
                            bodies.change_frame(ibody));
     check(ibody);

@@ -115,9 +115,9 @@ class VariableOrder {
       trial[i] = found;
     }
     StepMeasures errors;
-    errors.length = {fewer.pose * size(last, reach), same.pose * size(trial, reach),
-                     more.pose * size(change, reach)};
     const Worth worth = worth_of(integrator, body, load, axes, rows);
+    errors.length = {fewer.pose * size(worth, last, reach), same.pose * size(worth, trial, reach),
+                     more.pose * size(worth, change, reach)};
     errors.energy = {energy(worth, fewer, last), energy(worth, same, trial),
                      energy(worth, more, change)};
     errors.rounding = rounding(worth, reach, rows);
@@ -136,9 +136,10 @@ class VariableOrder {
                         const Load &load, const double *axes, const double *rows) const
   {
     const double *trial = rows + scheme.trial_row();
+    const Worth worth = worth_of(integrator, body, load, axes, rows);
     StepMeasures errors;
-    errors.length.same = same.pose * size(trial, reach);
-    errors.energy.same = energy(worth_of(integrator, body, load, axes, rows), same, trial);
+    errors.length.same = same.pose * size(worth, trial, reach);
+    errors.energy.same = energy(worth, same, trial);
     return errors;
   }
 
@@ -191,6 +192,7 @@ class VariableOrder {
   /// Change of energy per unit of error; rates: of the velocities times the step.
   struct Worth {
     double position, rate, angle, turn[3], q[4], norm2, twice_kinetic;
+    double axes[9], per_inertia[3];
   };
   static constexpr double LAST_DIGIT = std::numeric_limits<double>::epsilon();
 
@@ -205,10 +207,22 @@ class VariableOrder {
             factorial * adams_moulton(scheme.first() ? k - 1 : k - 2).value()};
   }
 
-  double size(const double *row, double reach) const
+  double size(const Worth &worth, const double *row, double reach) const
   {
     const double *x = row + Scheme::POSITION, *q = row + scheme.quaternion();
-    return std::max(length(x), 2.0 * reach * std::sqrt(dot4(q, q)));
+    if (!scheme.momentum()) return std::max(length(x), 2.0 * reach * std::sqrt(dot4(q, q)));
+    double turn[3];
+    angle_of(worth, row, turn);
+    return std::max(length(x), reach * length(turn));
+  }
+
+  /// The rotation in a row, along the principal axes.
+  void angle_of(const Worth &worth, const double *row, double *turn) const
+  {
+    if (!scheme.momentum())
+      return angular_velocity(worth.q, worth.norm2, row + scheme.quaternion(), turn);
+    to_body(worth.axes, row + Scheme::ANGULAR_MOMENTUM, turn);
+    for (int i = 0; i < 3; ++i) turn[i] *= worth.per_inertia[i];
   }
 
   /// Forces are evaluated at rounded coordinates, so the energy has an error of the rounding times
@@ -242,6 +256,8 @@ class VariableOrder {
     worth.twice_kinetic = body.mass * dot3(state.velocity, state.velocity);
     for (int i = 0; i < 3; ++i)
       worth.twice_kinetic += body.inertia[i] * state.omega_body[i] * state.omega_body[i];
+    std::copy_n(axes, 9, worth.axes);
+    inverse_moments(body, worth.per_inertia);
     std::copy_n(state.q, 4, worth.q);
     worth.norm2 = scheme.norm2(state.q);
     return worth;
@@ -249,9 +265,9 @@ class VariableOrder {
 
   double energy(const Worth &worth, const Weights &weights, const double *row) const
   {
-    const double *x = row + Scheme::POSITION, *q = row + scheme.quaternion();
+    const double *x = row + Scheme::POSITION;
     double turn[3], sum = 0.0;
-    angular_velocity(worth.q, worth.norm2, q, turn);
+    angle_of(worth, row, turn);
     const double pose = worth.position * length(x) + worth.angle * length(turn);
     const double *p = scheme.first() ? row + Scheme::MOMENTUM : x;
     const double *w = scheme.first() ? row + Scheme::OMEGA : turn;

@@ -182,6 +182,7 @@ inline const std::vector<TunedSet> &tuned_sets()
       {SECOND, DRIVEN, {0.518283853L}},
       {SECOND, DRIVEN, {0.612194931L, 0.286697465L}, 0.005707609L},
       {SECOND, DRIVEN, {0.605389137L, 0.296087276L}, 0.002163953L, true},
+      {Formulation::MOMENTUM, DRIVEN, {0.605389137L, 0.296087276L}, 0.003L},
       {SECOND, DRIVEN, {0.68109688L, 0.214659532L, 0.054497661L}},
       {SECOND, DRIVEN, {0.764735219L, 0.414859115L, 0.077867825L, 0.021600975L}, 0.027779193L},
       {SECOND, DRIVEN, {0.767583958L, 0.315047149L, 0.095050269L, 0.010917458L, 0.001670165L}},
@@ -206,12 +207,17 @@ inline const std::vector<TunedSet> &tuned_sets()
   return sets;
 }
 
+/// Formulation momentum has a set of its own for this number of values, otherwise those of second.
+constexpr int OWN_SET_OF_MOMENTA = 5;
+
 /// The tuned set, null if there is none.  any_norm: the set for quaternions of any length, if there
 /// is one.
 inline const TunedSet *tuned_set(Formulation formulation, int values, Columns columns,
                                  bool any_norm = false)
 {
   const TunedSet *found = nullptr;
+  const bool own = formulation == Formulation::MOMENTUM && values == OWN_SET_OF_MOMENTA;
+  if (!own && formulation == Formulation::MOMENTUM) formulation = Formulation::SECOND;
   for (const TunedSet &set : tuned_sets())
     if (set.formulation == formulation && set.values() == values && set.columns == columns &&
         (any_norm || !set.any_norm) && (!found || set.any_norm))

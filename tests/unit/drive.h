@@ -93,7 +93,7 @@ struct StartHost {
   void begin(double of)
   {
     spacing = of;
-    collocation.begin(local_series(body, state, load(state, dot4(state.q, state.q)), spacing),
+    collocation.begin(body, local_series(body, state, load(state, dot4(state.q, state.q)), spacing),
                       work);
   }
   void foretell() { collocation.foretell(work); }
@@ -202,7 +202,7 @@ struct Motion {
   BodyState state() const { return integrator.body_state(body, rows); }
   const double *q() const { return rows + scheme.quaternion(); }
 
-  void predict() { integrator.predict(rows); }
+  void predict() { integrator.predict(body, rows); }
   Correction correct(const Load &met) { return integrator.correct(body, met, rows); }
 
   Correction step()

@@ -107,7 +107,7 @@ struct Follower {
   StepErrors try_step()
   {
     StepMeasures all;
-    for (One &one : bodies) integrator.predict(one.rows.data());
+    for (One &one : bodies) integrator.predict(one.body, one.rows.data());
     take_states();
     const vector<Load> met = loads(bodies);
     ++evaluations;

@@ -209,7 +209,8 @@ struct Host {
       vector<Load> loads;
       const Upper second = meet(our.chain.friction(), our.box_chain.friction(), 0.0, loads);
       for (size_t b = 0; b < work.size(); ++b)
-        collocation.begin(local_series(our.bodies[b], our.scaled[b], loads[b], our.h), work[b]);
+        collocation.begin(our.bodies[b],
+                          local_series(our.bodies[b], our.scaled[b], loads[b], our.h), work[b]);
       collocation.begin<Upper::SIZE>(our.matrix.m.data(),
                                      (our.rate * our.matrix).scaled(our.h).m.data(),
                                      second.m.data(), cell);
@@ -310,7 +311,7 @@ struct Host {
     matrix = cell.matrix();
     rate = cell.rate(h);
     for (size_t b = 0; b < bodies.size(); ++b) {
-      integrator.predict(rows[b].data());
+      integrator.predict(bodies[b], rows[b].data());
       scaled[b] = integrator.body_state(bodies[b], rows[b].data());
     }
     met = met_in(states(), matrix);
@@ -354,7 +355,7 @@ struct Host {
     matrix = cell.matrix();
     rate = cell.rate(h);
     for (size_t b = 0; b < bodies.size(); ++b) {
-      integrator.finish(met.loads[b], rows[b].data(), pending[b]);
+      integrator.finish(bodies[b], met.loads[b], rows[b].data(), pending[b]);
       scaled[b] = integrator.body_state(bodies[b], rows[b].data());
     }
     const Scheme of_heat = heat_scheme();

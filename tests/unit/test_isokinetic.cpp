@@ -73,7 +73,7 @@ struct Host {
       const vector<Load> loads = our.acting(power);
       collocation.begin(0.0, power, heat);
       for (size_t b = 0; b < work.size(); ++b)
-        collocation.begin(local_series(our.bodies[b], our.states[b], loads[b], our.h), work[b]);
+        collocation.begin(our.bodies[b], local_series(our.bodies[b], our.states[b], loads[b], our.h), work[b]);
     }
     void foretell()
     {
@@ -138,7 +138,7 @@ struct Host {
   void step()
   {
     vector<Integrator::Pending> pending;
-    for (auto &r : rows) integrator.predict(r.data());
+    for (size_t b = 0; b < bodies.size(); ++b) integrator.predict(bodies[b], rows[b].data());
     read_states();
     const vector<Load> loads = loads_of(states);
     for (size_t b = 0; b < bodies.size(); ++b)
@@ -153,7 +153,7 @@ struct Host {
     heat.advance(integrator, found.power());
     const Multipliers factor = scale_factors(mode, target, found);
     for (size_t b = 0; b < bodies.size(); ++b) {
-      integrator.finish(loads[b], rows[b].data(), pending[b]);
+      integrator.finish(bodies[b], loads[b], rows[b].data(), pending[b]);
       if (rescale) integrator.scale_momenta(bodies[b], factor, rows[b].data());
     }
     read_states();
@@ -362,11 +362,11 @@ TEST(Isokinetic, AnAxisWithoutInertiaIsLeftAlone)
        h, h, rows.data());
   const double axis = rows[Scheme::OMEGA + 2], across = rows[Scheme::OMEGA];
   for (int n = 0; n < 1000; ++n) {
-    integrator.predict(rows.data());
+    integrator.predict(rod, rows.data());
     auto pending = integrator.begin(Load{}, integrator.axes_of(rows.data()).data(), rows.data());
     for (int pass = 0; pass < scheme.passes; ++pass)
       integrator.correct_pass(rod, Load{}, Friction(alpha), rows.data(), pending);
-    integrator.finish(Load{}, rows.data(), pending);
+    integrator.finish(rod, Load{}, rows.data(), pending);
   }
   integrator.scale_momenta(rod, grown, rows.data());
   EXPECT_NEAR(rows[Scheme::OMEGA + 2], axis, 1.0e-15);

@@ -50,7 +50,7 @@ vector<double> kernel_step(const Scheme &scheme, const vector<double> &given)
   const Load load = {{given[4], given[5], given[6]}, {given[7], given[8], given[9]}};
   vector<double> rows = some_history(scheme);
   const Integrator integrator(scheme, H);
-  integrator.predict(rows.data());
+  integrator.predict(body, rows.data());
   integrator.correct(body, load, rows.data());
   rows.resize(scheme.values() * scheme.width());    // carries are below the digits compared here
   return rows;

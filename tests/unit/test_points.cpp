@@ -36,7 +36,7 @@ TEST(Points, MoveToTheBitAsWithRotation)
       std::vector<double> whole = history(scheme, h), center = whole, changed = whole;
       BodyState kept = integrator.body_state(POINT, center.data());
       for (int step = 0; step < 40; ++step) {
-        integrator.predict(whole.data());
+        integrator.predict(POINT, whole.data());
         const BodyState s = integrator.body_state(POINT, whole.data());
         const Correction told = integrator.correct(POINT, pull(s.center), whole.data());
 

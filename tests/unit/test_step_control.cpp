@@ -175,7 +175,7 @@ TEST(StepControl, RowsComeAndGoWithoutAnError)
         Integrator integrator(to, h);
         integrator.rescale(rows.data(), ratio);
         integrator.set_step(ratio * h);
-        integrator.predict(rows.data());
+        integrator.predict(RigidBody(), rows.data());
         auto distance = [&](double later) {
           const vector<double> exact = polynomial(to, degree, 0.3 + later, ratio * h);
           return Check::largest_difference(rows.data(), exact.data(), (degree + 1) * to.width());
@@ -252,7 +252,7 @@ TEST(StepControl, TheEstimateIsTheCorrectorsOwn)
     seed(scheme, scene.body,
          local_series(scene.body, scene.start, scene.load(scene.start, 1.0), 0.1), 0.1, 0.1,
          rows.data());
-    integrator.predict(rows.data());
+    integrator.predict(scene.body, rows.data());
     for (const double reach :
          {1e-3, 1.0, 1e3}) {    // an angle counts as the displacement of the outermost part
       StepMeasures errors;

@@ -85,7 +85,8 @@ struct Host {
           our.chain.is_stiff(our.target_of(our.time()), our.twice_kinetic(), our.h,
                              collocation.pairs());
       for (size_t b = 0; b < work.size(); ++b)
-        collocation.begin(local_series(our.bodies[b], our.states[b], loads[b], our.h), work[b]);
+        collocation.begin(our.bodies[b],
+                          local_series(our.bodies[b], our.states[b], loads[b], our.h), work[b]);
       collocation.begin(0.0, our.twice_kinetic(), twice);
     }
     void foretell()
@@ -134,7 +135,7 @@ struct Host {
     const int n = scheme.values();
     ++steps;
     for (size_t b = 0; b < bodies.size(); ++b) {
-      integrator.predict(rows[b].data());
+      integrator.predict(bodies[b], rows[b].data());
       states[b] = integrator.body_state(bodies[b], rows[b].data());
     }
     const vector<Load> loads = loads_of(states);
@@ -154,7 +155,7 @@ struct Host {
     }
     if (length) chain.conclude();
     for (size_t b = 0; b < bodies.size(); ++b) {
-      integrator.finish(loads[b], rows[b].data(), pending[b]);
+      integrator.finish(bodies[b], loads[b], rows[b].data(), pending[b]);
       states[b] = integrator.body_state(bodies[b], rows[b].data());
     }
   }

@@ -1,0 +1,214 @@
+/* Formulation momentum: rows of the angular momentum, and quaternions that turn with it. */
+
+#include "gear_quat_gauss.h"
+#include "scenes.h"
+
+#include <gtest/gtest.h>
+
+using namespace Drive;
+
+namespace {
+
+Scheme momentum(int values, bool tuned = true)
+{
+  Scheme scheme = scheme_of(Formulation::MOMENTUM, values, 0, true);
+  scheme.tuned = tuned;
+  return scheme;
+}
+
+/// Coefficients of h L(t), with this angle in a step; terms fall as those of a vibration.
+struct Wobble {
+  Turn::Momentum rows = {};
+  static constexpr int TERMS = 8;
+
+  explicit Wobble(double h, double frequency = 1.0)
+  {
+    const double first[3] = {0.5, -0.3, 0.4};
+    double power = h;
+    for (int k = 0; k < TERMS; ++k, power *= frequency * h / (k + 1))
+      for (int i = 0; i < 3; ++i) rows[k][i] = power * first[(i + k) % 3];
+  }
+};
+
+/// The same rotation in many short parts.
+void turn_in_parts(double h, double frequency, int parts, double *q)
+{
+  const Wobble whole(h, frequency);
+  for (int part = 0; part < parts; ++part) {
+    Turn::Momentum rows = {};
+    const double begin = double(part) / parts;
+    for (int k = 0; k < Wobble::TERMS; ++k)
+      for (int j = k; j < Wobble::TERMS; ++j) {
+        double binomial = 1.0;
+        for (int m = 0; m < k; ++m) binomial = binomial * (j - m) / (m + 1);
+        const double factor = binomial * std::pow(begin, j - k) * std::pow(1.0 / parts, k + 1);
+        for (int i = 0; i < 3; ++i) rows[k][i] += factor * whole.rows[j][i];
+      }
+    Turn::advance(TOP, rows, Wobble::TERMS, Turn::MOST, q);
+  }
+}
+
+double error_of_turn(double h, int order, double frequency = 1.0)
+{
+  double q[4] = {0.1, -0.3, 0.5, 0.8}, exact[4];
+  project_norm(q);
+  std::copy_n(q, 4, exact);
+  turn_in_parts(h, frequency, 16, exact);
+  Turn::advance(TOP, Wobble(h, frequency).rows, Wobble::TERMS, order, q);
+  return Check::attitude_distance(q, exact);
+}
+
+}    // namespace
+
+TEST(Turn, HasTheOrderOfItsSeries)
+{
+  for (const int order : {5, 6, 7, 8}) {    // slow enough for the least order
+    const double slope =
+        std::log2(error_of_turn(0.04, order, 10.0) / error_of_turn(0.02, order, 10.0));
+    EXPECT_GT(slope, order + 0.6) << order;
+  }
+}
+
+TEST(Turn, IsAccurateForFastRotations)
+{
+  for (const double h : {0.1, 0.3, 1.0}) EXPECT_LT(error_of_turn(h, 10), 1.0e-9 * h) << h;
+}
+
+TEST(Turn, CoefficientsAddUpToTheTurn)
+{
+  double q[4] = {0.1, -0.3, 0.5, 0.8}, series[Turn::MOST + 1][4], sum[4] = {};
+  project_norm(q);
+  Turn::coefficients(TOP, Wobble(0.3).rows, Wobble::TERMS, q, series);
+  for (const auto &term : series)
+    for (int i = 0; i < 4; ++i) sum[i] += term[i];
+  Turn::advance(TOP, Wobble(0.3).rows, Wobble::TERMS, Turn::MOST, q);
+  EXPECT_LT(Check::largest_difference(sum, q, 4), 1.0e-14);
+}
+
+// without torque the method is exact, for any step and number of values
+
+TEST(Momentum, AFreeTopIsExact)
+{
+  const Scene scene = free_top();
+  for (const int values : {5, 7, 9, 12})
+    for (const double h : {0.1, 0.5}) {
+      Motion motion(scene.body, scene.start, scene.load, momentum(values), h, Start::BOOTSTRAP, h);
+      double before[3], after[3];
+      momentum_along_space(scene.body, motion.state(), before);
+      motion.run(scene.time);
+      momentum_along_space(scene.body, motion.state(), after);
+      EXPECT_LT(scene.missed(motion.state()), 5.0e-12) << values << " values, h " << h;
+      EXPECT_LT(Check::largest_difference(before, after, 3), 5.0e-15);
+    }
+}
+
+TEST(Momentum, OrdersInTheCage)
+{
+  const Scene scene = cage(CageScene(1, true));
+  struct Steps {
+    int values;
+    double wide, narrow;
+  };
+  for (const Steps &s : {Steps{4, 0.25, 0.16},
+                         {5, 0.1, 0.05},
+                         {6, 0.16, 0.08},
+                         {7, 0.08, 0.05},
+                         {8, 0.1, 0.05},
+                         {9, 0.08, 0.05},
+                         {10, 0.1, 0.08}}) {
+    const Scheme scheme = momentum(s.values, false);
+    EXPECT_GT(error_slopes(scene, scheme, {s.wide, s.narrow})[0], scheme.order() - 0.4) << scheme;
+  }
+}
+
+TEST(Momentum, OrdersOfOrientationsInTheCage)
+{
+  const CageScene cage_scene(1, true);
+  const auto end = [&](const Scheme &scheme, double h) {
+    Motion motion(cage_scene.body, cage_scene.start, cage_scene, scheme, h, Start::BOOTSTRAP, h);
+    motion.run(40.0);
+    return motion.state();
+  };
+  const BodyState exact = end(momentum(12, false), 0.02);
+  for (const int values : {5, 7, 9}) {
+    const auto error = [&](double h) {
+      return Check::attitude_distance(end(momentum(values, false), h).q, exact.q);
+    };
+    EXPECT_GT(std::log2(error(0.16) / error(0.08)), values - 1.4) << values;
+  }
+}
+
+TEST(Momentum, ARodTurnsAboutItsTwoAxes)
+{
+  const RigidBody rod = {2.0, {1.5, 1.5, 0.0}};
+  BodyState state = {{}, {0.5, 0.5, -0.5, 0.5}, {0.1, 0.2, 0.0}, {0.7, -0.4, 0.3}};
+  Motion motion(rod, state, free_of_load, momentum(9), 0.1, Start::BOOTSTRAP, 0.1);
+  double before[3], after[3];
+  momentum_along_space(rod, state, before);
+  motion.run(50.0);
+  momentum_along_space(rod, motion.state(), after);
+  EXPECT_LT(Check::largest_difference(before, after, 3), 1.0e-13);
+  EXPECT_EQ(motion.state().omega_body[2], 0.0);    // it has no momentum
+}
+
+TEST(Momentum, FrictionDampsBothMomenta)
+{
+  const double alpha = 0.3, time = 4.0;
+  const RigidBody body = TOP;
+  const BodyState start = top_state(0.0);
+  const Friction friction = Multipliers{alpha, alpha};
+  const auto missed = [&](double h, bool implicit) {
+    const Scheme scheme = momentum(7);
+    const Integrator integrator(scheme, h);
+    Friction damper = friction;
+    damper.implicit = implicit;
+    std::vector<double> rows(scheme.size());
+    TaylorSeries series = local_series(body, start, damped_load(body, start, Load{}, friction), h);
+    double l[3];
+    for (int i = 0; i < 3; ++i) l[i] = series.momentum[0][i];
+    series.terms = series.terms_of_q = scheme.values();    // of an exponential decay
+    double power = 1.0;
+    for (int k = 0; k < scheme.values(); ++k) {
+      for (int i = 0; i < 3; ++i) {
+        series.momentum[k][i] = power * l[i];
+        series.c[k + 1][i] = power * h * start.velocity[i] / (k + 1);
+      }
+      power *= -alpha * h / (k + 1);
+    }
+    seed(scheme, body, series, h, h, rows.data());
+    for (int step = 0; step < std::lround(time / h); ++step) {
+      integrator.predict(body, rows.data());
+      auto pending = integrator.begin(Load{}, integrator.axes_of(rows.data()).data(), rows.data());
+      for (int pass = 0; pass < scheme.coupled_passes(); ++pass)
+        integrator.correct_pass(body, Load{}, damper, rows.data(), pending);
+      integrator.finish(body, Load{}, rows.data(), pending);
+    }
+    double before[3], after[3];
+    momentum_along_space(body, start, before);
+    momentum_along_space(body, integrator.body_state(body, rows.data()), after);
+    const double left = std::exp(-alpha * time);
+    for (double &one : before) one *= left;
+    return Check::largest_difference(before, after, 3);
+  };
+  for (const bool implicit : {false, true}) {
+    EXPECT_LT(missed(0.2, implicit), 1.0e-5);
+    EXPECT_GT(std::log2(missed(0.4, implicit) / missed(0.2, implicit)), 5.0) << implicit;
+  }
+}
+
+TEST(Momentum, VelocitiesAreWrittenAndRead)
+{
+  const Scheme scheme = momentum(9);
+  const Integrator integrator(scheme, 0.2);
+  std::vector<double> rows(scheme.size());
+  BodyState state = top_state(0.0);
+  seed(scheme, TOP, local_series(TOP, state, Load{}, 0.2), 0.2, 0.2, rows.data());
+  for (int i = 0; i < 3; ++i) {
+    state.velocity[i] += 0.3 * i;
+    state.omega_body[i] -= 0.2 * i;
+  }
+  integrator.set_velocities(TOP, state, Load{}, rows.data());
+  const BodyState found = integrator.body_state(TOP, rows.data());
+  EXPECT_LT(Check::largest_difference(found.velocity, state.velocity, 3), 1.0e-15);
+  EXPECT_LT(Check::largest_difference(found.omega_body, state.omega_body, 3), 1.0e-15);
+}
