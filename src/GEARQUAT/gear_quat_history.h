@@ -175,7 +175,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
       for (int c = 0; c < COUNT; ++c) value[c] = coefficients[j] * r[c];
       add<COUNT>(rows, n, j, component, value);
     }
-    for (int j = std::max(LOWEST, CARRIES); j < n; ++j) {
+    for (int j = LOWEST > CARRIES ? LOWEST : CARRIES; j < n; ++j) {
       const double coefficient = coefficients[j];
       double *row = rows + j * WIDTH + component;
 #pragma GCC unroll 4
@@ -223,7 +223,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
 #pragma GCC unroll 12
       for (int pass = 0; pass < N - 1; ++pass)
 #pragma GCC unroll 12
-        for (int j = N - 2; j >= std::max(pass, LOWEST); --j)
+        for (int j = N - 2; j >= (pass > LOWEST ? pass : LOWEST); --j)
           if (j < CARRIES)
             add_exactly(y[j], carry[j], y[j + 1]);
           else

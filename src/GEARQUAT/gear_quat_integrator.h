@@ -52,17 +52,25 @@ class Integrator : public Kinematics {
   }
   /// Uses the given coefficients, as many as in the scheme.
   Integrator(const Scheme &scheme, double h, const CorrectorCoefficients &coefficients) :
-      Kinematics(scheme, h), n(scheme.values()), any_norm(scheme), c(coefficients)
+      Kinematics(scheme, h), n(scheme.values()), any_norm(scheme),
+      turning(n - 1, std::pow(10.0, -std::min(15, n + 8))), c(coefficients)
   {
   }
 
   int values() const { return n; }
 
+  /// Up to Turn::LANES bodies; each result is independent of the others.
+  void predict(int count, const RigidBody *const *bodies, double *const *rows) const
+  {
+    if (scheme.momentum()) turn(count, bodies, rows);
+    with_history([&](auto history) {
+      for (int body = 0; body < count; ++body) predict(history, rows[body]);
+    });
+  }
   void predict(const RigidBody &body, double *rows) const
   {
-    with_history([&](auto history) {
-      predict(history, body, rows);
-    });
+    const RigidBody *one = &body;
+    predict(1, &one, &rows);
   }
 
   void predict_center(double *rows) const
@@ -87,11 +95,14 @@ class Integrator : public Kinematics {
   Correction correct(const RigidBody &body, const Load &load, const double *axes,
                      double *rows) const
   {
+    if (scheme.momentum())
+      return scheme.compensate ? correct(Momenta<2>(), body, load, axes, rows)
+                               : correct(Momenta<0>(), body, load, axes, rows);
     Pending pending = begin(load, axes, rows);
     with_history([&](auto history) {
       correct_all(history, body, load, rows, pending);
     });
-    return conclude(body, load, rows, pending);
+    return conclude(load, rows, pending);
   }
   Correction correct(const RigidBody &body, const Load &load, double *rows) const
   {
@@ -166,10 +177,16 @@ class Integrator : public Kinematics {
   Correction finish(const RigidBody &body, const Load &load, double *rows,
                     const Pending &pending) const
   {
+    if (scheme.momentum()) {
+      const auto axes = axes_of(rows);    // predicted
+      return scheme.compensate
+          ? correct_momenta(Momenta<2>(), body, load, axes.data(), pending.total, rows)
+          : correct_momenta(Momenta<0>(), body, load, axes.data(), pending.total, rows);
+    }
     with_history([&](auto history) {
-      finish_passes(history, body, rows, pending);
+      finish_passes(history, rows, pending);
     });
-    return conclude(body, load, rows, pending);
+    return conclude(load, rows, pending);
   }
 
   /// A rotation about an axis without inertia does not change: it has no momentum.
@@ -213,22 +230,29 @@ class Integrator : public Kinematics {
   template <int CARRIES> static constexpr int center_columns(First<CARRIES>) { return 6; }
   template <int CARRIES> static constexpr int center_columns(Second<CARRIES>) { return 3; }
 
-  template <class History> void predict(History history, const RigidBody &, double *rows) const
+  template <class History> void predict(History history, double *rows) const
   {
     history.predict(rows, n);
   }
 
-  template <int CARRIES>
-  void predict(Momenta<CARRIES> history, const RigidBody &body, double *rows) const
+  template <int CARRIES> void predict(Momenta<CARRIES> history, double *rows) const
   {
-    Turn::Momentum momentum;
-    double *columns = rows + Scheme::ANGULAR_MOMENTUM;
-    for (int k = 0; k + 1 < n; ++k)
-      for (int i = 0; i < 3; ++i)
-        momentum[k][i] = (k + 1) * columns[(k + 1) * Scheme::SECOND_WIDTH + i];
-    Turn::advance(body, momentum, n - 1, n + 1, rows + Scheme::SECOND_QUATERNION);
     history.template predict<3>(rows, n);
-    history.template predict<3, 1>(columns, n);
+    history.template predict<3, 1>(rows + Scheme::ANGULAR_MOMENTUM, n);
+  }
+
+  /// Quaternions turn with the momenta of histories that are not predicted yet.
+  void turn(int count, const RigidBody *const *bodies, double *const *rows) const
+  {
+    Turn::Momentum momenta[Turn::LANES];
+    double *q[Turn::LANES];
+    for (int body = 0; body < count; ++body) {
+      const double *row = rows[body] + Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM;
+      for (int k = 0; k + 1 < n; ++k, row += Scheme::SECOND_WIDTH)
+        for (int i = 0; i < 3; ++i) momenta[body][k][i] = (k + 1) * row[i];
+      q[body] = rows[body] + Scheme::SECOND_QUATERNION;
+    }
+    turning.advance(count, bodies, momenta, q);
   }
 
   /// Calls act with the kind of history that this scheme has.
@@ -248,6 +272,7 @@ class Integrator : public Kinematics {
 
   int n;
   AnyNorm any_norm;
+  Turn turning;
   CorrectorCoefficients c;
 
   /// The residual of a column is target - row, for the row of the order of the equation.
@@ -327,7 +352,7 @@ class Integrator : public Kinematics {
   }
 
   template <int CARRIES>
-  void finish_passes(First<CARRIES> history, const RigidBody &, double *rows, const Pending &) const
+  void finish_passes(First<CARRIES> history, double *rows, const Pending &) const
   {
     if (scheme.projection != Projection::NO) project_row(history, rows);
   }
@@ -339,8 +364,7 @@ class Integrator : public Kinematics {
     });
   }
 
-  Correction conclude(const RigidBody &body, const Load &load, const double *rows,
-                      const Pending &pending) const
+  Correction conclude(const Load &load, const double *rows, const Pending &pending) const
   {
     const double *q = rows + scheme.quaternion();
     double dx[3], dq[4], angle_body[3];
@@ -348,28 +372,21 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 4; ++i) dq[i] = q[i] - pending.q[i];
     angular_velocity(pending.q, dot4(pending.q, pending.q), dq, angle_body);
     const Residual &total = pending.total;
-    double turned2;
-    if (scheme.momentum()) {
-      turn_of(body, pending.q, total.q, 0.5, dq);
-      turned2 = dot3(dq, dq);
-    } else {
-      turned2 = any_norm.turning2(total.q, pending.q);
-    }
     return {dot3(load.force, dx) + dot3(pending.torque_body, angle_body),
-            c.weight2 * dot3(total.x, total.x), c.weight2 * turned2};
+            c.weight2 * dot3(total.x, total.x), c.weight2 * any_norm.turning2(total.q, pending.q)};
   }
 
   // the momentum formulation
 
-  /// factor I^-1 A r, along the principal axes.
-  static void turn_of(const RigidBody &body, const double *q, const double *residual, double factor,
+  /// I^-1 A r, along the principal axes.
+  static void turn_of(const RigidBody &body, const double *axes, const double *residual,
                       double *angle_body)
   {
-    double a[9], per_inertia[3];
-    rotation_matrix(q, 1.0, a);
-    to_body(a, residual, angle_body);
+    double per_inertia[3];
+    to_body(axes, residual, angle_body);
     inverse_moments(body, per_inertia);
-    for (int i = 0; i < 3; ++i) angle_body[i] *= factor * per_inertia[i];
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) angle_body[i] *= per_inertia[i];
   }
 
   void momentum_residual(const double *torque_space, const double *rows, double *residual) const
@@ -387,12 +404,31 @@ class Integrator : public Kinematics {
   }
 
   template <int CARRIES>
-  void correct_all(Momenta<CARRIES> history, const RigidBody &body, const Load &load, double *rows,
-                   Pending &pending) const
+  Correction correct(Momenta<CARRIES> history, const RigidBody &body, const Load &load,
+                     const double *axes, double *rows) const
   {
-    position_residual(body, load, rows, pending.total.x);
-    momentum_residual(load.torque_space, rows, pending.total.q);
-    finish_passes(history, body, rows, pending);
+    Residual total;
+    position_residual(body, load, rows, total.x);
+    momentum_residual(load.torque_space, rows, total.q);
+    return correct_momenta(history, body, load, axes, total, rows);
+  }
+
+  /// Corrects the rows with these residuals.  axes: predicted.
+  template <int CARRIES>
+  Correction correct_momenta(Momenta<CARRIES> history, const RigidBody &body, const Load &load,
+                             const double *axes, const Residual &total, double *rows) const
+  {
+    double *q = rows + Scheme::SECOND_QUATERNION, turn[3], angle[3], change[4], torque_body[3];
+    turn_of(body, axes, total.q, turn);
+    for (int i = 0; i < 3; ++i) angle[i] = c.driven[0] * turn[i];
+    history.template correct<3>(rows, n, c.driven.data(), Scheme::POSITION, total.x);
+    history.template correct<3, 1>(rows, n, c.driven.data(), Scheme::ANGULAR_MOMENTUM, total.q);
+    quaternion_rate(q, angle, change);
+    history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
+    project_row(history, rows);
+    to_body(axes, load.torque_space, torque_body);
+    return {c.driven[0] * dot3(load.force, total.x) + dot3(torque_body, angle),
+            c.weight2 * dot3(total.x, total.x), 0.25 * c.weight2 * dot3(turn, turn)};
   }
 
   template <int CARRIES, class Damper>
@@ -412,20 +448,6 @@ class Integrator : public Kinematics {
     if (!friction.implicit) return;
     const double part = friction.implicit_torque(0.5 * h * c.driven[1]);
     for (int i = 0; i < 3; ++i) pending.total.q[i] *= part;
-  }
-
-  template <int CARRIES>
-  void finish_passes(Momenta<CARRIES> history, const RigidBody &body, double *rows,
-                     const Pending &pending) const
-  {
-    double *q = rows + Scheme::SECOND_QUATERNION, angle[3], change[4];
-    turn_of(body, q, pending.total.q, c.driven[0], angle);
-    history.template correct<3>(rows, n, c.driven.data(), Scheme::POSITION, pending.total.x);
-    history.template correct<3, 1>(rows, n, c.driven.data(), Scheme::ANGULAR_MOMENTUM,
-                                   pending.total.q);
-    quaternion_rate(q, angle, change);
-    history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
-    project_row(history, rows);
   }
 
   /// Positions (Eq. 17): forces are constant, so one pass is sufficient.
@@ -575,8 +597,7 @@ class Integrator : public Kinematics {
   }
 
   template <int CARRIES>
-  void finish_passes(Second<CARRIES> history, const RigidBody &, double *rows,
-                     const Pending &pending) const
+  void finish_passes(Second<CARRIES> history, double *rows, const Pending &pending) const
   {
     double residual[Scheme::SECOND_WIDTH];
     copy(pending.total.x, 3, residual + Scheme::POSITION);

@@ -313,10 +313,10 @@ StartFound Start::search(Forces &forces)
 }
 
 /// Node spacing: the step, shortened if necessary to keep every site within half the skin, and the
-/// rotation of every body from its outermost node below 1.5 radians.
+/// rotation of every body from its outermost node below 1 radian.
 double Start::first_spacing() const
 {
-  constexpr double LARGEST_TURN = 1.5;
+  constexpr double LARGEST_TURN = 1.0;
   const double span = collocation.pairs() * std::fabs(h), reach = 0.25 * neighbor->skin;
   double longest = 1.0;    // in units of these limits
   for (int i = 0; i < atom->nlocal; ++i)

@@ -371,7 +371,7 @@ class Collocation {
     Turn::Momentum momentum;
     const int terms = momentum_of(w, w.pairs, node, momentum);
     std::copy_n(w.q, 4, state.q);
-    Turn::advance(w.body, momentum, terms, terms + 1, state.q);
+    Turn(terms).advance(w.body, momentum, state.q);
     rotation_matrix(state.q, 1.0, axes);
     to_body(axes, rate + 3, state.omega_body);
     for (int i = 0; i < 3; ++i)

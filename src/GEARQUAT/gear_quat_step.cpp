@@ -145,11 +145,19 @@ void Step::predict(double **f)
     integrator->center_state(bodies.rigid_of(ibody), seen(rows), bodies.change_state(ibody));
     check(ibody);
   }
+  for (size_t first = 0; first < bodies.tops.size(); first += Turn::LANES) {
+    const RigidBody *rigid[Turn::LANES];
+    double *rows[Turn::LANES];
+    const int count = std::min(bodies.tops.size() - first, (size_t) Turn::LANES);
+    for (int k = 0; k < count; ++k) {
+      rigid[k] = &bodies.rigid_of(bodies.tops[first + k]);
+      rows[k] = bodies.history(bodies.tops[first + k]);
+    }
+    integrator->predict(count, rigid, rows);
+  }
   for (const int ibody : bodies.tops) {
-    double *rows = bodies.history(ibody);
-    integrator->predict(bodies.rigid_of(ibody), rows);
-    integrator->body_state(bodies.rigid_of(ibody), seen(rows), bodies.change_state(ibody),
-                           bodies.change_frame(ibody));
+    integrator->body_state(bodies.rigid_of(ibody), seen(bodies.history(ibody)),
+                           bodies.change_state(ibody), bodies.change_frame(ibody));
     check(ibody);
   }
   if (coupling) coupling->predict(*integrator);

@@ -6,28 +6,81 @@
 #include "gear_quat_turn.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS::GearQuat;
 
-/// The coefficients of p = (v, c), from the first on.  Components are written out: compilers do not
-/// keep hundreds of small functions inline.
-template <int ORDER> struct Rotation {
-  struct Vector {
-    double x, y, z;
-  };
-  Vector v[ORDER + 1];
-  double c[ORDER + 1];
+/// A number for each of the bodies.
+#if defined(__GNUC__)
+using Lanes = double __attribute__((vector_size(Turn::LANES * sizeof(double))));
+#else
+struct Lanes {
+  double of[Turn::LANES];
+  double &operator[](int lane) { return of[lane]; }
+  double operator[](int lane) const { return of[lane]; }
+};
+template <class Act> static Lanes each(Act act)
+{
+  Lanes found;
+  for (int lane = 0; lane < Turn::LANES; ++lane) found[lane] = act(lane);
+  return found;
+}
+static Lanes operator+(Lanes a, Lanes b)
+{
+  return each([&](int k) {
+    return a[k] + b[k];
+  });
+}
+static Lanes operator-(Lanes a, Lanes b)
+{
+  return each([&](int k) {
+    return a[k] - b[k];
+  });
+}
+static Lanes operator*(Lanes a, Lanes b)
+{
+  return each([&](int k) {
+    return a[k] * b[k];
+  });
+}
+static Lanes operator*(double a, Lanes b)
+{
+  return each([&](int k) {
+    return a * b[k];
+  });
+}
+static Lanes operator-(Lanes a)
+{
+  return each([&](int k) {
+    return -a[k];
+  });
+}
+static Lanes &operator+=(Lanes &a, Lanes b)
+{
+  return a = a + b;
+}
+#endif
 
-  void find(const double *per_inertia, const double (*of_l)[3])
+struct Vector {
+  Lanes x, y, z;
+};
+
+/// The coefficients of p = (v, c) for all lanes, from the first on.  Components are written out:
+/// compilers do not keep hundreds of small functions inline.
+template <int ORDER> struct Rotation {
+  Vector v[ORDER + 1];
+  Lanes c[ORDER + 1];
+
+  void find(const Lanes *per_inertia, const Vector *l)
   {
-    Vector l[ORDER], w[ORDER], u[ORDER];
-    for (int k = 0; k < ORDER; ++k) l[k] = {of_l[k][0], of_l[k][1], of_l[k][2]};
+    Vector w[ORDER], u[ORDER];
+    const Lanes zero = {};
     w[0] = {per_inertia[0] * l[0].x, per_inertia[1] * l[0].y, per_inertia[2] * l[0].z};
     v[1] = {0.5 * w[0].x, 0.5 * w[0].y, 0.5 * w[0].z};
-    c[1] = 0.0;
+    c[1] = zero;
 #pragma GCC unroll 10
     for (int k = 1; k < ORDER; ++k) {
-      double x = 0.0, y = 0.0, z = 0.0, down = 0.0;
+      Lanes x = zero, y = zero, z = zero, down = zero;
 #pragma GCC unroll 10
       for (int j = 1; j <= k; ++j) {
         x += v[j].y * l[k - j].z - v[j].z * l[k - j].y;
@@ -59,97 +112,122 @@ template <int ORDER> struct Rotation {
   }
 };
 
-/// p at the end, of unit length but for the truncation.
-template <int ORDER> static void sum(const double *per_inertia, const double (*l)[3], double *p)
+/// p at the end, of unit length but for the truncation, with the terms of each lane.
+template <int ORDER>
+static void sum(const int *orders, const Lanes *per_inertia, const Vector *l, Lanes *p)
 {
   Rotation<ORDER> rotation;
   rotation.find(per_inertia, l);
-  p[0] = p[1] = p[2] = p[3] = 0.0;
+  Lanes zero = {}, one = zero, counts = zero;
+  for (int lane = 0; lane < Turn::LANES; ++lane) one[lane] = 1.0;
+  p[0] = p[1] = p[2] = p[3] = zero;
 #pragma GCC unroll 10
   for (int k = ORDER; k > 0; --k) {
-    p[0] += rotation.v[k].x;
-    p[1] += rotation.v[k].y;
-    p[2] += rotation.v[k].z;
-    p[3] += rotation.c[k];
+    for (int lane = 0; lane < Turn::LANES; ++lane) counts[lane] = k <= orders[lane];
+    p[0] += counts * rotation.v[k].x;
+    p[1] += counts * rotation.v[k].y;
+    p[2] += counts * rotation.v[k].z;
+    p[3] += counts * rotation.c[k];
   }
-  p[3] += 1.0;
+  p[3] += one;
 }
 
-static void sum(int order, const double *per_inertia, const double (*l)[3], double *p)
+static void sum(int order, const int *orders, const Lanes *per_inertia, const Vector *l, Lanes *p)
 {
   switch (order) {    // loops of a known length are unrolled
     case 5:
-      return sum<5>(per_inertia, l, p);
+      return sum<5>(orders, per_inertia, l, p);
     case 6:
-      return sum<6>(per_inertia, l, p);
+      return sum<6>(orders, per_inertia, l, p);
     case 7:
-      return sum<7>(per_inertia, l, p);
+      return sum<7>(orders, per_inertia, l, p);
     case 8:
-      return sum<8>(per_inertia, l, p);
+      return sum<8>(orders, per_inertia, l, p);
     case 9:
-      return sum<9>(per_inertia, l, p);
+      return sum<9>(orders, per_inertia, l, p);
     case 10:
-      return sum<10>(per_inertia, l, p);
+      return sum<10>(orders, per_inertia, l, p);
     case 12:
-      return sum<12>(per_inertia, l, p);
+      return sum<12>(orders, per_inertia, l, p);
     case 16:
-      return sum<16>(per_inertia, l, p);
+      return sum<16>(orders, per_inertia, l, p);
     default:
-      return sum<Turn::MOST>(per_inertia, l, p);
+      return sum<Turn::MOST>(orders, per_inertia, l, p);
   }
 }
 
-/// l = A(q) L, and 1/I.  Returns the square of half the angle of the step.
+/// The series of a free asymmetric top has a finite radius of convergence: its error is about
+/// (angle/4)^(order + 1).
+Turn::Turn(int terms, double accuracy) : terms(terms)
+{
+  for (int k = 0; k < KINDS; ++k) {
+    const double angle = 4.0 * std::pow(accuracy, 1.0 / (ORDERS[k] + 1));
+    fastest[k] = ORDERS[k] > terms ? angle * angle : 0.0;
+  }
+}
+
+int Turn::order_for(double angle2) const
+{
+  for (int k = 0; k < KINDS; ++k)
+    if (angle2 <= fastest[k]) return ORDERS[k];
+  return MOST;
+}
+
+/// l = A(q) L of one body in its lane, and 1/I.  Returns the square of the angle of the step.
 static double along_axes(const RigidBody &body, const Turn::Momentum &momentum, int terms,
-                         const double *q, double (*l)[3], double *per_inertia)
+                         const double *q, int lane, Vector *l, Lanes *per_inertia)
 {
-  double a[9], half2 = 0.0;
-  inverse_moments(body, per_inertia);
+  double a[9], inverse[3], along[3], angle2 = 0.0;
+  inverse_moments(body, inverse);
   rotation_matrix(q, 1.0, a);
-  for (int k = 0; k < terms; ++k) to_body(a, momentum[k], l[k]);
-#pragma GCC unroll 3
-  for (int i = 0; i < 3; ++i) half2 += 0.25 * per_inertia[i] * l[0][i] * per_inertia[i] * l[0][i];
-  return half2;
+  for (int k = 0; k < terms; ++k) {
+    to_body(a, momentum[k], along);
+    l[k].x[lane] = along[0];
+    l[k].y[lane] = along[1];
+    l[k].z[lane] = along[2];
+    if (k > 0) continue;
+    for (int i = 0; i < 3; ++i) angle2 += inverse[i] * along[i] * inverse[i] * along[i];
+  }
+  for (int i = 0; i < 3; ++i) per_inertia[i][lane] = inverse[i];
+  return angle2;
 }
 
-/// One of the orders that sum() knows.  half2: the square of half the angle of the step.
-static int order_for(double half2, int least)
+void Turn::advance(int count, const RigidBody *const *bodies, const Momentum *momenta,
+                   double *const *q) const
 {
-  // (angle/4)^(order + 1) is 1e-14 here: the series of a free asymmetric top has a finite radius
-  // of convergence
-  struct Limit {
-    int order;
-    double half2;
-  };
-  constexpr Limit LIMITS[] = {{5, 8.62e-05}, {6, 0.0004},  {7, 0.00126}, {8, 0.0031},
-                              {9, 0.00634},  {10, 0.0114}, {12, 0.0281}, {16, 0.0902}};
-  for (const Limit &one : LIMITS)
-    if (least <= one.order && half2 <= one.half2) return one.order;
-  return Turn::MOST;
-}
-
-void Turn::advance(const RigidBody &body, const Momentum &momentum, int terms, int least, double *q)
-{
-  double l[MOST][3], per_inertia[3], p[4], before[4];
-  const double half2 = along_axes(body, momentum, terms, q, l, per_inertia);
-  const int order = order_for(half2, least);
-  for (int k = terms; k < order; ++k) l[k][0] = l[k][1] = l[k][2] = 0.0;
-  sum(order, per_inertia, l, p);
-  for (int i = 0; i < 4; ++i) before[i] = q[i];
-  w_times(before, p, q);
-  project_norm(q);
+  Vector l[MOST];
+  Lanes per_inertia[3], p[4];
+  int orders[LANES], order = 0;
+  for (int lane = 0; lane < LANES; ++lane) {
+    const int body = std::min(lane, count - 1);    // a lane without a body repeats the last one
+    orders[lane] =
+        order_for(along_axes(*bodies[body], momenta[body], terms, q[body], lane, l, per_inertia));
+    order = std::max(order, orders[lane]);
+  }
+  const Lanes zero = {};
+  for (int k = terms; k < order; ++k) l[k] = {zero, zero, zero};
+  sum(order, orders, per_inertia, l, p);
+  for (int body = 0; body < count; ++body) {
+    const double before[4] = {q[body][0], q[body][1], q[body][2], q[body][3]};
+    const double turned[4] = {p[0][body], p[1][body], p[2][body], p[3][body]};
+    w_times(before, turned, q[body]);
+    project_norm(q[body]);
+  }
 }
 
 void Turn::coefficients(const RigidBody &body, const Momentum &momentum, int terms, const double *q,
                         double (*found)[4])
 {
-  double l[MOST][3] = {}, per_inertia[3];
+  Vector l[MOST] = {};
+  Lanes per_inertia[3];
   Rotation<MOST> rotation;
-  along_axes(body, momentum, terms, q, l, per_inertia);
+  for (int lane = 0; lane < LANES; ++lane)
+    along_axes(body, momentum, terms, q, lane, l, per_inertia);
   rotation.find(per_inertia, l);
   for (int i = 0; i < 4; ++i) found[0][i] = q[i];
   for (int k = 1; k <= MOST; ++k) {
-    const double p[4] = {rotation.v[k].x, rotation.v[k].y, rotation.v[k].z, rotation.c[k]};
+    const double p[4] = {rotation.v[k].x[0], rotation.v[k].y[0], rotation.v[k].z[0],
+                         rotation.c[k][0]};
     w_times(q, p, found[k]);
   }
 }

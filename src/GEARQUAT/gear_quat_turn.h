@@ -26,19 +26,37 @@ namespace LAMMPS_NS::GearQuat {
 class Turn {
  public:
   static constexpr int MOST = 24;    ///< order of the series, and terms of L
+  static constexpr int LANES = 2;    ///< bodies that turn side by side
 
   /// The coefficients of h L(t) along the axes of space.
   using Momentum = double[MOST][3];
 
-  /// Orientation after the step.  terms: known coefficients of L; the others are zero.  q: unit
-  /// quaternion at its beginning, and the result.  least: order of the series at least; a fast
-  /// rotation has a higher order.
-  static void advance(const RigidBody &body, const Momentum &momentum, int terms, int least,
-                      double *q);
+  /// terms: known coefficients of L, the others are zero.  The series has at least this order, and
+  /// more where a free rotation would have a relative error above `accuracy`.
+  explicit Turn(int terms, double accuracy = 1.0e-14);
+
+  /// The orientations of up to LANES bodies after the step; a result does not depend on the others.
+  /// q: unit quaternions at the beginning, and the results.
+  void advance(int count, const RigidBody *const *bodies, const Momentum *momenta,
+               double *const *q) const;
+  void advance(const RigidBody &body, const Momentum &momentum, double *q) const
+  {
+    const RigidBody *one = &body;
+    advance(1, &one, &momentum, &q);
+  }
 
   /// The Taylor coefficients of q(t), MOST + 1.
   static void coefficients(const RigidBody &body, const Momentum &momentum, int terms,
                            const double *q, double (*found)[4]);
+
+ private:
+  static constexpr int ORDERS[] = {5, 6, 7, 8, 9, 10, 12, 16, MOST};
+  static constexpr int KINDS = sizeof(ORDERS) / sizeof(*ORDERS);
+
+  int terms;
+  double fastest[KINDS];    ///< square of the angle of a step up to which an order is sufficient
+
+  int order_for(double angle2) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

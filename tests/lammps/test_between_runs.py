@@ -28,6 +28,7 @@ CHANGES = {
 FIXES = {
     "second": "",
     "first": "formulation first",
+    "momentum": "formulation momentum",
     "isokinetic": "formulation first isokinetic total",
     "masks": "force 1*5 on off off torque 3* off off on",
     "zero": "start zero corrector gear",  # histories with tuned coefficients contain more of this start after 60 steps

@@ -87,6 +87,8 @@ WAYS = {
     "respa": dict(before="run_style respa 2 1"),
     "wide": dict(before="comm_modify cutoff 9.8"),
     "first": dict(fix="formulation first compensate yes"),
+    "momentum": dict(fix="formulation momentum compensate yes"),
+    "momentum thermostat": dict(fix="formulation momentum temp 100.0 120.0 0.1", after="fix_modify move energy no"),
     "total": dict(fix="formulation first isokinetic total"),
     "separate": dict(fix="formulation first isokinetic separate"),
     "thermostat": dict(

@@ -65,7 +65,7 @@ def test_an_energy_is_an_energy(lmp_tree):
     assert run[ENERGY].max() > 1e-9
 
 
-@pytest.mark.parametrize("formulation", ["first", "second"])
+@pytest.mark.parametrize("formulation", ["first", "second", "momentum"])
 def test_forces_that_jump(lmp_tree, formulation):
     """At a cutoff without a shift the energy jumps, and is restored when the bodies separate."""
     run = tables(

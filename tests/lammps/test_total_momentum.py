@@ -276,7 +276,7 @@ def test_a_mesh_is_no_force_from_outside(lmp_tree, mesh):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("formulation", ["first", "second"])
+@pytest.mark.parametrize("formulation", ["first", "second", "momentum"])
 def test_bodies_at_rest_warm_up(lmp_tree, formulation, kind):
     """Forces move them, and the thermostat adds the rest; the conserved quantity is constant from the start."""
     words = f"formulation {formulation} temp 1.0 1.0 0.5 thermostat {kind}"

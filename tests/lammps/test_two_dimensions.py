@@ -84,7 +84,7 @@ write_dump all custom end.dump id xu yu zu vx vy vz modify sort id format float 
 
 
 @pytest.mark.parametrize("flat", [True, False])
-@pytest.mark.parametrize("words", ["", "formulation first", "values 5"])
+@pytest.mark.parametrize("words", ["", "formulation first", "formulation momentum", "values 5"])
 def test_a_body_that_leaves_the_plane_turns_about_z(lmp_tree, words, flat):
     """A body with velocities out of the plane, also one that is not flat, keeps center and rotation in the plane."""
     arms = (ARMS - ARMS.mean(axis=0)) * [1, 1, 0 if flat else 1]
