@@ -108,6 +108,10 @@ void Arguments::parse_keywords(int narg, char **arg)
     if (row.kind == Keyword::WORD && !given.count(row.name))
       row.store(*this, {row.standard_word(is_on("tolerance", ""))});
   check_conditions();
+  if (scheme.momentum() && scheme.projection == Projection::NO)
+    error->all(FLERR,
+               "Fix gear/quat project: formulation momentum keeps the length of quaternions "
+               "always; leave out project no");
   check_ranges();
   if (is_on("tolerance", "")) check_control();
   check_pressure();

@@ -62,9 +62,10 @@ class Integrator : public Kinematics {
   /// Up to Turn::LANES bodies; each result is independent of the others.
   void predict(int count, const RigidBody *const *bodies, double *const *rows) const
   {
-    if (scheme.momentum()) turn(count, bodies, rows);
+    double turned[Turn::LANES][4];
+    if (scheme.momentum()) turn(count, bodies, rows, turned);
     with_history([&](auto history) {
-      for (int body = 0; body < count; ++body) predict(history, rows[body]);
+      for (int body = 0; body < count; ++body) predict(history, turned[body], rows[body]);
     });
   }
   void predict(const RigidBody &body, double *rows) const
@@ -230,29 +231,32 @@ class Integrator : public Kinematics {
   template <int CARRIES> static constexpr int center_columns(First<CARRIES>) { return 6; }
   template <int CARRIES> static constexpr int center_columns(Second<CARRIES>) { return 3; }
 
-  template <class History> void predict(History history, double *rows) const
+  template <class History> void predict(History history, const double *, double *rows) const
   {
     history.predict(rows, n);
   }
 
-  template <int CARRIES> void predict(Momenta<CARRIES> history, double *rows) const
+  template <int CARRIES>
+  void predict(Momenta<CARRIES> history, const double *turned, double *rows) const
   {
+    history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, turned);
     history.template predict<3>(rows, n);
     history.template predict<3, 1>(rows + Scheme::ANGULAR_MOMENTUM, n);
   }
 
-  /// Quaternions turn with the momenta of histories that are not predicted yet.
-  void turn(int count, const RigidBody *const *bodies, double *const *rows) const
+  /// The changes of quaternions with the momenta of histories that are not predicted yet.
+  void turn(int count, const RigidBody *const *bodies, double *const *rows,
+            double (*turned)[4]) const
   {
     Turn::Momentum momenta[Turn::LANES];
-    double *q[Turn::LANES];
+    const double *q[Turn::LANES];
     for (int body = 0; body < count; ++body) {
       const double *row = rows[body] + Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM;
       for (int k = 0; k + 1 < n; ++k, row += Scheme::SECOND_WIDTH)
         for (int i = 0; i < 3; ++i) momenta[body][k][i] = (k + 1) * row[i];
       q[body] = rows[body] + Scheme::SECOND_QUATERNION;
     }
-    turning.advance(count, bodies, momenta, q);
+    turning.changes(count, bodies, momenta, q, turned);
   }
 
   /// Calls act with the kind of history that this scheme has.

@@ -54,7 +54,7 @@ void GearQuat::seed_body(Bodies &bodies, int ibody, const BodyState &state, cons
 {
   const RigidBody &rigid = bodies.rigid_of(ibody);
   auto series = local_series(rigid, state, acting, h);
-  series.terms = series.terms_of_q = terms;
+  series.terms = terms;
   seed(scheme, rigid, series, h, h, bodies.history(ibody));
 }
 
@@ -287,7 +287,11 @@ StartFound Start::search(Forces &forces)
 {
   forces.save();
   Search all(*this, forces);
-  const StartFound start = find_start(most_start_values(starters), first_spacing(), all);
+  const bool coupled = std::any_of(starters.begin(), starters.end(), [](const Starter &one) {
+    return one.coupling != nullptr;
+  });
+  const StartFound start = find_start(most_start_values(starters), first_spacing(), all,
+                                      coupled ? StartPlan::COUPLED : 0.0);
   const double copies = 3.0 * sizeof(double) * (atom->torque_flag ? 4 : 3) *
       (atom->nlocal + atom->nghost);    // positions, velocities, forces
   for (auto &one : starters) one.ownership->note_scratch(one.work.memory_usage() + copies);
@@ -326,8 +330,8 @@ double Start::first_spacing() const
       longest = std::max(longest, span * length(atom->v[i]) / reach);
   for (const auto &one : starters)
     for (int ibody = 0; ibody < one.bodies->nowned(); ++ibody)
-      longest = std::max(longest,
-                         span * length(one.bodies->state_of(ibody).omega_body) / LARGEST_TURN);
+      longest =
+          std::max(longest, span * length(one.bodies->state_of(ibody).omega_body) / LARGEST_TURN);
   return h / over_ranks(MPI_MAX, longest, world);
 }
 

@@ -57,7 +57,13 @@ class StartPlan {
   /// Pairs of nodes required by the order of a history with this number of rows.
   static int pairs_for(int values) { return (values + 1) / 2; }
 
-  explicit StartPlan(int values) : wanted(values), odd(values % 2), most(pairs_for(values)) {}
+  /// slowest: a change becomes smaller at most by this factor in another evaluation.  With a coupling
+  /// the loads change its variables first, and these change the loads one evaluation later.
+  explicit StartPlan(int values, double slowest = 0.0) :
+      wanted(values), odd(values % 2), most(pairs_for(values)), slowest(slowest)
+  {
+  }
+  static constexpr double COUPLED = 0.05;
 
   /// Reduces the number of values.
   void limit(int values)
@@ -90,7 +96,7 @@ class StartPlan {
       known = present;
       first[known] = change;
     } else if (before > 0.0)
-      contraction = std::max(contraction == 1.0 ? 0.0 : contraction, change / before);
+      contraction = std::max({contraction == 1.0 ? 0.0 : contraction, change / before, slowest});
     return choose();
   }
 
@@ -114,6 +120,7 @@ class StartPlan {
   int wanted;    ///< number of values
   bool odd;      ///< odd number of values: one pair more than the order needs
   int most;
+  double slowest;
   int present = 1;             ///< pair that is evaluated
   int known = 0;               ///< pairs evaluated at least once
   int round = 0;               ///< last pair of a round that evaluates all pairs again
@@ -166,12 +173,13 @@ struct StartFound {
 ///   void foretell()                        adds a pair, for all bodies
 ///   bool visit(int pair, double &change)   forces at both nodes; false if they cannot be evaluated
 ///   int values_that_do(int values)         sufficient values, at most `values`; after pair 2
-template <class Host> StartFound find_start(int values, double spacing, Host &host)
+template <class Host>
+StartFound find_start(int values, double spacing, Host &host, double slowest = 0.0)
 {
   using Verdict = StartPlan::Verdict;
   StartFound found = {Verdict::SHORTER_SPACING};
   for (int n = 0; n < StartPlan::MAX_SPACINGS; ++n, spacing *= 0.5) {
-    StartPlan plan(values);
+    StartPlan plan(values, slowest);
     host.begin(spacing);
     found.spacing = spacing;
     do {
@@ -193,9 +201,11 @@ template <class Host> StartFound find_start(int values, double spacing, Host &ho
 struct TaylorSeries {
   static constexpr int MAX_TERMS = MAX_VALUES + 3;
   int terms = 0;
-  int terms_of_q = 0;    ///< more than of x: L determines them
   double c[MAX_TERMS][7];
   Turn::Momentum momentum;
+
+  /// After a collocation more than of x, because L determines them.
+  int terms_of_q() const { return terms > 3 ? MAX_TERMS : terms; }
 };
 
 /// The three terms determined by a state and its load, in units of the step h.
@@ -203,7 +213,7 @@ inline TaylorSeries local_series(const RigidBody &body, const BodyState &state, 
                                  double h)
 {
   TaylorSeries series;
-  series.terms = series.terms_of_q = 3;
+  series.terms = 3;
   double omegadot_body[3], qdot[4], qddot[4];
   angular_acceleration(body, state, dot4(state.q, state.q), load, omegadot_body);
   quaternion_rate(state.q, state.omega_body, qdot);
@@ -234,7 +244,7 @@ inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries
   for (int i = 0; i < scheme.size(); ++i) rows[i] = 0.0;
 
   double power = 1.0;
-  for (int j = 0; j < n && j < series.terms_of_q; ++j, power *= ratio) {
+  for (int j = 0; j < n && j < series.terms_of_q(); ++j, power *= ratio) {
     double *row = rows + j * width;
     const bool known = j < series.terms;
     for (int i = 0; i < 3 && known; ++i) row[Scheme::POSITION + i] = power * series.c[j][i];
@@ -249,7 +259,7 @@ inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries
   // p = m x' and omega = 2 W(q)^T q', term by term
 
   power = 1.0 / series_step;
-  for (int j = 0; j < n && j + 1 < series.terms_of_q; ++j, power *= ratio) {
+  for (int j = 0; j < n && j + 1 < series.terms_of_q(); ++j, power *= ratio) {
     double *row = rows + j * width;
     for (int i = 0; i < 3; ++i)
       row[Scheme::MOMENTUM + i] = power * body.mass * (j + 1) * series.c[j + 1][i];
@@ -427,7 +437,6 @@ class Collocation {
     static_assert(MAX_NODES + 2 <= TaylorSeries::MAX_TERMS, "series too short for the nodes");
     expand<6>(w, pairs, c[0]);
     const int terms = momentum_of(w, pairs, 1, series.momentum);
-    series.terms_of_q = TaylorSeries::MAX_TERMS;
     Turn::coefficients(w.body, series.momentum, terms, w.q, q);
     for (int j = 0; j < TaylorSeries::MAX_TERMS; ++j) {
       for (int i = 0; i < 3; ++i) series.c[j][i] = j < series.terms ? c[j][i] : 0.0;

@@ -112,14 +112,13 @@ template <int ORDER> struct Rotation {
   }
 };
 
-/// p at the end, of unit length but for the truncation, with the terms of each lane.
+/// p - (0, 0, 0, 1) at the end, with the terms of each lane.
 template <int ORDER>
 static void sum(const int *orders, const Lanes *per_inertia, const Vector *l, Lanes *p)
 {
   Rotation<ORDER> rotation;
   rotation.find(per_inertia, l);
-  Lanes zero = {}, one = zero, counts = zero;
-  for (int lane = 0; lane < Turn::LANES; ++lane) one[lane] = 1.0;
+  Lanes zero = {}, counts = zero;
   p[0] = p[1] = p[2] = p[3] = zero;
 #pragma GCC unroll 10
   for (int k = ORDER; k > 0; --k) {
@@ -129,7 +128,6 @@ static void sum(const int *orders, const Lanes *per_inertia, const Vector *l, La
     p[2] += counts * rotation.v[k].z;
     p[3] += counts * rotation.c[k];
   }
-  p[3] += one;
 }
 
 static void sum(int order, const int *orders, const Lanes *per_inertia, const Vector *l, Lanes *p)
@@ -179,7 +177,7 @@ static double along_axes(const RigidBody &body, const Turn::Momentum &momentum, 
 {
   double a[9], inverse[3], along[3], angle2 = 0.0;
   inverse_moments(body, inverse);
-  rotation_matrix(q, 1.0, a);
+  rotation_matrix(q, dot4(q, q), a);
   for (int k = 0; k < terms; ++k) {
     to_body(a, momentum[k], along);
     l[k].x[lane] = along[0];
@@ -192,8 +190,8 @@ static double along_axes(const RigidBody &body, const Turn::Momentum &momentum, 
   return angle2;
 }
 
-void Turn::advance(int count, const RigidBody *const *bodies, const Momentum *momenta,
-                   double *const *q) const
+void Turn::changes(int count, const RigidBody *const *bodies, const Momentum *momenta,
+                   const double *const *q, double (*change)[4]) const
 {
   Vector l[MOST];
   Lanes per_inertia[3], p[4];
@@ -208,11 +206,19 @@ void Turn::advance(int count, const RigidBody *const *bodies, const Momentum *mo
   for (int k = terms; k < order; ++k) l[k] = {zero, zero, zero};
   sum(order, orders, per_inertia, l, p);
   for (int body = 0; body < count; ++body) {
-    const double before[4] = {q[body][0], q[body][1], q[body][2], q[body][3]};
     const double turned[4] = {p[0][body], p[1][body], p[2][body], p[3][body]};
-    w_times(before, turned, q[body]);
-    project_norm(q[body]);
+    w_times(q[body], turned, change[body]);
   }
+}
+
+void Turn::advance(const RigidBody &body, const Momentum &momentum, double *q) const
+{
+  const RigidBody *one = &body;
+  const double *before = q;
+  double change[1][4];
+  changes(1, &one, &momentum, &before, change);
+  for (int i = 0; i < 4; ++i) q[i] += change[0][i];
+  project_norm(q);
 }
 
 void Turn::coefficients(const RigidBody &body, const Momentum &momentum, int terms, const double *q,

@@ -35,15 +35,12 @@ class Turn {
   /// more where a free rotation would have a relative error above `accuracy`.
   explicit Turn(int terms, double accuracy = 1.0e-14);
 
-  /// The orientations of up to LANES bodies after the step; a result does not depend on the others.
-  /// q: unit quaternions at the beginning, and the results.
-  void advance(int count, const RigidBody *const *bodies, const Momentum *momenta,
-               double *const *q) const;
-  void advance(const RigidBody &body, const Momentum &momentum, double *q) const
-  {
-    const RigidBody *one = &body;
-    advance(1, &one, &momentum, &q);
-  }
+  /// The changes of the quaternions of up to LANES bodies in the step.  A result does not depend on
+  /// the others, and has no rounding error of q.  q: unit quaternions at the beginning.
+  void changes(int count, const RigidBody *const *bodies, const Momentum *momenta,
+               const double *const *q, double (*change)[4]) const;
+  /// q: the unit quaternion of one body, at the beginning and then at the end of the step.
+  void advance(const RigidBody &body, const Momentum &momentum, double *q) const;
 
   /// The Taylor coefficients of q(t), MOST + 1.
   static void coefficients(const RigidBody &body, const Momentum &momentum, int terms,

@@ -263,7 +263,7 @@ def clustered(kind, n=4, cut=30.0, fix="custom v_pair", before="", **settings):
 def test_energy_is_kept_with_the_methods_order(lmp_tree, kind, formulation):
     """The total energy at the end, compared with the start, for halved steps."""
     errors = []
-    values = {"first": 5, "second": 6}[formulation]
+    values = 5 if formulation == "first" else 6
     fix = f"custom v_pair formulation {formulation} corrector gear values {values}"  # order 5
     for dt in (0.032, 0.016, 0.008):
         text = clustered(kind, fix=fix, dt=dt, steps=round(0.8 / dt))

@@ -41,8 +41,9 @@ def test_the_papers_small_step_leaves_rounding_only(lmp_wheel, formulation):
     compensated, plain = (run(compensate=word, **small) for word in ("yes", "no"))
     assert off(compensated) < 1e-12 < off(plain) < 2e-10
     assert max(compensated["v_qerror"].max(), plain["v_qerror"].max()) < 2e-12
-    free = run(dt=1e-3, steps=20_000, every=200, project="no", start="zero")
-    assert free["v_qerror"].max() > 2e-12
+    if formulation != "momentum":  # which always projects
+        free = run(dt=1e-3, steps=20_000, every=200, project="no", start="zero")
+        assert free["v_qerror"].max() > 2e-12
 
 
 # --- poles --------------------------------------------------------------------------------------

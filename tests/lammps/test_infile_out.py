@@ -36,7 +36,7 @@ def gap(case1, dt, body, mass=1.0):
 def test_a_run_goes_on_up_to_its_history(lmp_tree, examples, formulation, body):
     """The new start causes an error of the method's order; masses and moments of the file are used."""
     case1 = Case1(lmp_tree, examples, formulation)
-    case1.variables["values"] = {"first": 5, "second": 6}[formulation]  # order 5 in either
+    case1.variables["values"] = 5 if formulation == "first" else 6  # order 5 in each
     case1.variables["corrector"] = "gear"
     starts, gaps = zip(*(gap(case1, dt, body) for dt in (0.16, 0.08, 0.04)))
     assert max(starts) < 1e-13  # only the history is lost

@@ -55,7 +55,7 @@ def test_a_restart_written_before_the_first_step(case1):
 def test_a_restart_with_the_other_formulation_says_so(case1):
     whole = case1.run("run 1000")
     case1.run("run 500\nwrite_restart half")
-    other = {"first": "second", "second": "first"}[case1.variables["formulation"]]
+    other = {"first": "second", "second": "momentum", "momentum": "first"}[case1.variables["formulation"]]
     second = case1.run("run 500", "half", formulation=other)
     assert "written with other settings of formulation; poses" in second.stdout
     assert end(second) == pytest.approx(end(whole), abs=1e-7)

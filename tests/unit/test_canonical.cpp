@@ -169,7 +169,8 @@ double correlation(const vector<double> &x)
 /// True if samples are independent and have this distribution.  what: label of the printed
 /// probability.
 template <class Cdf>
-void expect_samples(const char *what, Formulation formulation, const vector<double> &samples, Cdf cdf)
+void expect_samples(const char *what, Formulation formulation, const vector<double> &samples,
+                    Cdf cdf)
 {
   const double p = probability(samples, cdf);
   printf("p = %.4f  %s, %s\n", p, what, formulation == FIRST ? "first" : "second");

@@ -73,7 +73,8 @@ struct Host {
       const vector<Load> loads = our.acting(power);
       collocation.begin(0.0, power, heat);
       for (size_t b = 0; b < work.size(); ++b)
-        collocation.begin(our.bodies[b], local_series(our.bodies[b], our.states[b], loads[b], our.h), work[b]);
+        collocation.begin(our.bodies[b],
+                          local_series(our.bodies[b], our.states[b], loads[b], our.h), work[b]);
     }
     void foretell()
     {
@@ -107,7 +108,7 @@ struct Host {
     target = sums(acting(power));
     const Collocation collocation(scheme.start_values());
     Search search(*this, collocation);
-    const StartFound found = find_start(scheme.start_values(), h, search);
+    const StartFound found = find_start(scheme.start_values(), h, search, StartPlan::COUPLED);
     states = search.at_start;
     ASSERT_EQ(found.spacing, h);
     rows.assign(bodies.size(), vector<double>(scheme.size()));

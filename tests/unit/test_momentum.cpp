@@ -94,14 +94,14 @@ TEST(Turn, ABodyDoesNotDependOnItsNeighbor)
   const Wobble slow(0.05), fast(0.6);
   std::copy_n(&slow.rows[0][0], 3 * Turn::MOST, &momenta[0][0][0]);
   std::copy_n(&fast.rows[0][0], 3 * Turn::MOST, &momenta[1][0][0]);
-  double both[2][4] = {{0.1, 0.1, 0.7, 0.7}, {0.5, 0.5, 0.5, 0.5}}, alone[2][4];
-  std::copy_n(&both[0][0], 8, &alone[0][0]);
-  double *q[] = {both[0], both[1]};
+  const double first[] = {0.1, 0.1, 0.7, 0.7}, second[] = {0.5, 0.5, 0.5, 0.5};
+  const double *q[] = {first, second};
+  double both[2][4], alone[4];
   const Turn turn(slow.terms);
-  turn.advance(2, bodies, momenta, q);
+  turn.changes(2, bodies, momenta, q, both);
   for (int k = 0; k < 2; ++k) {
-    turn.advance(*bodies[k], momenta[k], alone[k]);
-    for (int i = 0; i < 4; ++i) EXPECT_EQ(both[k][i], alone[k][i]);
+    turn.changes(1, bodies + k, momenta + k, q + k, &alone);
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(both[k][i], alone[i]);
   }
 }
 
@@ -187,7 +187,7 @@ TEST(Momentum, FrictionDampsBothMomenta)
     TaylorSeries series = local_series(body, start, damped_load(body, start, Load{}, friction), h);
     double l[3];
     for (int i = 0; i < 3; ++i) l[i] = series.momentum[0][i];
-    series.terms = series.terms_of_q = scheme.values();    // of an exponential decay
+    series.terms = scheme.values();    // of an exponential decay
     double power = 1.0;
     for (int k = 0; k < scheme.values(); ++k) {
       for (int i = 0; i < 3; ++i) {

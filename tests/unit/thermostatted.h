@@ -119,7 +119,7 @@ struct Host {
     const Collocation collocation(scheme.start_values());
     if (length) chain.begin_settled(target_of(0.0), twice_kinetic(), h);
     Search search(*this, collocation);
-    const StartFound found = find_start(scheme.start_values(), h, search);
+    const StartFound found = find_start(scheme.start_values(), h, search, StartPlan::COUPLED);
     states = search.at_start;
     ASSERT_EQ(found.spacing, h);
     rows.assign(bodies.size(), vector<double>(scheme.size()));
