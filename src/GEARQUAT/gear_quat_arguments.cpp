@@ -125,6 +125,8 @@ void Arguments::take_preset()
 {
   using Words = std::vector<std::pair<std::string, std::string>>;
   const bool first = is_on("formulation", "first");
+  if (is_on("formulation", "momentum"))
+    error->all(FLERR, "Fix gear/quat preset paper: the paper has formulations first and second");
   Words words = {{"corrector", "gear"}, {"passes", "1"}, {"start", "zero"}, {"project", "no"}};
   if (first)
     words.insert(words.end(), {{"values", "5"}, {"momentum", "predicted"}});

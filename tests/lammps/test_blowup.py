@@ -134,6 +134,8 @@ def test_too_large_a_step(lmp_tree, values, dt, ranks):
 def test_coarse_runs_of_today_are_left_alone(lmp_tree, examples, formulation, choices):
     """In these runs the energy is not conserved, but bodies are stable: in some runs |q|^2 is wrong by a factor of
     two."""
+    if formulation == "momentum":
+        choices = "accurate"  # the only ones
     scene = whole_deck(examples / "case1" / "in.case1")
     for dt in (0.25, 1.0) if choices == "accurate" or formulation == "second" else (0.25,):
         settings = dict(formulation=formulation, choices=choices, dt=dt, out="none")

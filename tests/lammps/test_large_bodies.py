@@ -102,7 +102,7 @@ WAYS = {
     "timestep": dict(run="run 100\ntimestep 0.0015\nrun 100"),
 }
 RANKS = {
-    1: ["plain", "first", "total", "separate", "thermostat", "masks", "cooled", "timestep"],
+    1: ["plain", "first", "momentum", "momentum thermostat", "total", "separate", "thermostat", "masks", "cooled", "timestep"],
     2: ["plain", "tiled", "total", "separate", "thermostat"],
     4: list(WAYS),
 }
