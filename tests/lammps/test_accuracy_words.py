@@ -36,8 +36,8 @@ def test_every_number_of_values_starts_with_its_order_and_stays_rigid(liquid, fo
     found = re.search(r"start of order (\d+) from (\d+) force evaluations", result.output)
     # the switching function of the forces has kinks, which limit the derivatives
     full, kinks = values + (values % 2 == 0), "forces change suddenly" in result.output
-    assert int(found[1]) == (min(full, 8) if kinks else full)
-    assert not kinks or values > 6
+    assert int(found[1]) == (min(full, 6) if kinks else full)
+    assert not kinks or values > 5
     pairs = (values + 1) // 2
     assert 2 * (3 if kinks else pairs) <= int(found[2]) <= pairs * (pairs + 1) + 4 * pairs
     arms = np.linalg.norm(x[1::3] - x[0::3], axis=1)
