@@ -9,19 +9,21 @@ from functools import cache
 from .decks import ROOT
 
 INCLUDED = (ROOT / "src" / "GEARQUAT", ROOT / "tests" / "unit")
+#: the sources of the kernel beside its headers
+KERNEL = (ROOT / "src" / "GEARQUAT" / "gear_quat_turn.cpp",)
 
 
 @cache
 def load(source):
     """Library of a C++ file ``source``; it is compiled again if the file or a header has changed."""
     headers = sorted(header for folder in INCLUDED for header in folder.rglob("*.h"))
-    text = b"".join(path.read_bytes() for path in (source, *headers))
+    text = b"".join(path.read_bytes() for path in (source, *KERNEL, *headers))
     folder = ROOT / "build" / "benchmarks" / source.parent.name
     compiled = folder / f"{source.stem}-{hashlib.sha256(text).hexdigest()[:16]}.so"
     if not compiled.is_file():
         folder.mkdir(parents=True, exist_ok=True)
         made = compiled.with_suffix(f".{os.getpid()}")
-        words = ["g++", "-O2", "-std=c++17", "-shared", "-fPIC", str(source), "-o", str(made)]
+        words = ["g++", "-O2", "-std=c++17", "-shared", "-fPIC", str(source), *map(str, KERNEL), "-o", str(made)]
         subprocess.run([*words, *(f"-I{path}" for path in INCLUDED)], check=True)
         made.replace(compiled)
     return ctypes.CDLL(str(compiled))

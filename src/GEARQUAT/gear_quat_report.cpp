@@ -308,9 +308,8 @@ static std::string settings(const Arguments &args)
   const std::string passes = scheme.passes
       ? fmt::format("{} pass{}", scheme.passes, scheme.passes == 1 ? "" : "es")
       : "passes auto";
-  return fmt::format("  formulation {}, {}, {}, corrector {}\n",
-                     word_of(scheme.formulation), values, passes,
-                     scheme.tuned ? "tuned" : "gear");
+  return fmt::format("  formulation {}, {}, {}, corrector {}\n", word_of(scheme.formulation),
+                     values, passes, scheme.tuned ? "tuned" : "gear");
 }
 
 /* ---------------------------------------------------------------------- */

@@ -63,7 +63,7 @@ class StartPlan {
       wanted(values), odd(values % 2), most(pairs_for(values)), slowest(slowest)
   {
   }
-  static constexpr double COUPLED = 0.05;
+  static constexpr double COUPLED = 0.1;
 
   /// Reduces the number of values.
   void limit(int values)
@@ -87,7 +87,8 @@ class StartPlan {
   {
     if (!std::isfinite(change) || (present == 1 && change > TOO_FAR))
       return Verdict::SHORTER_SPACING;
-    const double before = is_new() ? first[present - 1] : last[present];
+    const double before = is_new() ? first[present - 1]
+                                   : std::max(last[present], slowest * first[present]);
     const double falls = is_new() ? FALLS : CONTRACTS;
     if (change > CONVERGED && change > falls * before)
       return change < ROUNDING ? Verdict::CONVERGED : Verdict::JUMPS;

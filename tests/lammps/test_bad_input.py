@@ -33,7 +33,7 @@ ARGUMENTS = {
     "custom v_huge": "custom v_huge: the value of atom 6 is not a number below 2.14748e+09",
     "custom i_far": "custom i_far: values from -2147483647 to 2147483647 are too far apart",
     "molecule sloppy yes": "keyword: sloppy; the keywords are formulation, values, corrector,",
-    "molecule formulation third": "formulation: unknown value third (second or first)",
+    "molecule formulation third": "formulation: unknown value third (second, first or momentum)",
     "molecule formulation first formulation first": "keyword formulation is given twice",
     "molecule values 7.5": "values: 7.5 is not an integer; required: auto or 4 to 12 (second), 3 to 8 (first)",
     "molecule values passes 2": "values: passes is not an integer",

@@ -238,7 +238,7 @@ def test_any_inertia_has_the_full_order_where_the_estimates_are_small(lmp_wheel,
     for part in {"one site": [1]}.get(name, [2] if "I_min" in name else [1, 2]):
         assert found[-1][part] < 1e-9
         above = [(a, b) for a, b in zip(found, found[1:]) if a[0] and b[part] > 1e-13]  # rounding
-        assert max(np.log2(a[part] / b[part]) for a, b in above) > 8 - 0.7
+        assert max(np.log2(a[part] / b[part]) for a, b in above) > 8 - 1.2  # the spin about the thin axis has the rounding of the moment
 
 
 # --- boxes --------------------------------------------------------------------------------------
