@@ -12,7 +12,7 @@
      x' = p/m,  p' = F,  q' = 1/2 W(q) omega,  omega' from Euler's equations
    Second-order formulation (Rapaport), 7 components:
      x'' = F/m,  q'' = 1/2 W(q) (omega', -2 q'.q')
-  With Scheme::any_norm() gear_quat_any_norm.h replaces the second equation.
+   With Scheme::any_norm() gear_quat_any_norm.h replaces the second equation.
    Momentum formulation, 6 components and the quaternion:
      x'' = F/m,  L' = torque along the axes of space
    The quaternion turns exactly with the predicted L(t) (gear_quat_turn.h), then by the small

@@ -160,7 +160,7 @@ Turn::Turn(int terms, double accuracy) : terms(terms)
 {
   for (int k = 0; k < KINDS; ++k) {
     const double angle = 4.0 * std::pow(accuracy, 1.0 / (ORDERS[k] + 1));
-    fastest[k] = ORDERS[k] > terms ? angle * angle : 0.0;
+    fastest[k] = ORDERS[k] > terms ? angle * angle : -1.0;    // not even at rest
   }
 }
 

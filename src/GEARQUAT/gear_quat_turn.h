@@ -31,8 +31,9 @@ class Turn {
   /// The coefficients of h L(t) along the axes of space.
   using Momentum = double[MOST][3];
 
-  /// terms: known coefficients of L, the others are zero.  The series has at least this order, and
-  /// more where a free rotation would have a relative error above `accuracy`.
+  /// terms: known coefficients of L, the others are zero.  The order of the series is larger than
+  /// this, so that all of them count, and large enough for a relative error below `accuracy` of a
+  /// free rotation.
   explicit Turn(int terms, double accuracy = 1.0e-14);
 
   /// The changes of the quaternions of up to LANES bodies in the step.  A result does not depend on
@@ -51,7 +52,7 @@ class Turn {
   static constexpr int KINDS = sizeof(ORDERS) / sizeof(*ORDERS);
 
   int terms;
-  double fastest[KINDS];    ///< square of the angle of a step up to which an order is sufficient
+  double fastest[KINDS];    ///< squared angle of a step up to which an order is sufficient
 
   int order_for(double angle2) const;
 };

@@ -74,6 +74,14 @@ TEST(Turn, IsAccurateForFastRotations)
   for (const double h : {0.1, 0.3, 1.0}) EXPECT_LT(error_of_turn(Wobble(h)), 1.0e-9 * h) << h;
 }
 
+TEST(Turn, AllTermsCountFromRest)
+{
+  Wobble wobble(0.3);
+  for (int i = 0; i < 3; ++i) wobble.rows[0][i] = 0.0;
+  const double found = error_of_turn(wobble, 1.0e-3);
+  EXPECT_LT(found, 1.0e-10);
+}
+
 TEST(Turn, CoefficientsAddUpToTheTurn)
 {
   const Wobble wobble(0.1);
