@@ -53,7 +53,8 @@ class Integrator : public Kinematics {
   /// Uses the given coefficients, as many as in the scheme.
   Integrator(const Scheme &scheme, double h, const CorrectorCoefficients &coefficients) :
       Kinematics(scheme, h), n(scheme.values()), any_norm(scheme),
-      turning(n - 1, std::pow(10.0, -std::min(15, n + 8))), c(coefficients)
+      turning(n - 1, std::max(scheme.order(), LEAST_ORDER), std::pow(10.0, -std::min(15, n + 8))),
+      c(coefficients)
   {
   }
 
@@ -239,24 +240,23 @@ class Integrator : public Kinematics {
   template <int CARRIES>
   void predict(Momenta<CARRIES> history, const double *turned, double *rows) const
   {
+    double *q = rows + Scheme::SECOND_QUATERNION, *carry = CARRIES ? history.carry_of(q, n, 0) : q;
+    double kept[4], kept_carry[4];    // q has no part in the sums of the columns of x and L
     history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, turned);
-    history.template predict<3>(rows, n);
-    history.template predict<3, 1>(rows + Scheme::ANGULAR_MOMENTUM, n);
+    copy(q, 4, kept);
+    if (CARRIES) copy(carry, 4, kept_carry);
+    history.template predict<6>(rows, n);
+    copy(kept, 4, q);
+    if (CARRIES) copy(kept_carry, 4, carry);
   }
 
   /// The changes of quaternions with the momenta of histories that are not predicted yet.
   void turn(int count, const RigidBody *const *bodies, double *const *rows,
             double (*turned)[4]) const
   {
-    Turn::Momentum momenta[Turn::LANES];
-    const double *q[Turn::LANES];
-    for (int body = 0; body < count; ++body) {
-      const double *row = rows[body] + Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM;
-      for (int k = 0; k + 1 < n; ++k, row += Scheme::SECOND_WIDTH)
-        for (int i = 0; i < 3; ++i) momenta[body][k][i] = (k + 1) * row[i];
-      q[body] = rows[body] + Scheme::SECOND_QUATERNION;
-    }
-    turning.changes(count, bodies, momenta, q, turned);
+    const double *first[Turn::LANES];
+    for (int body = 0; body < count; ++body) first[body] = rows[body] + Scheme::SECOND_QUATERNION;
+    turning.changes(count, bodies, first, Scheme::SECOND_WIDTH, turned);
   }
 
   /// Calls act with the kind of history that this scheme has.
@@ -273,6 +273,9 @@ class Integrator : public Kinematics {
   {
     scheme.compensate ? act(First<1>()) : act(First<0>());
   }
+
+  /// Of the series of a turn.  Librations have products of low order, even if they turn slowly.
+  static constexpr int LEAST_ORDER = 6;
 
   int n;
   AnyNorm any_norm;
@@ -393,6 +396,16 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i) angle_body[i] *= per_inertia[i];
   }
 
+  /// The change of q by a small turn, of which the result has |q| = 1.
+  static void small_turn(const double *q, const double *angle_body, double *change)
+  {
+    double after[4];
+    quaternion_rate(q, angle_body, change);
+    for (int i = 0; i < 4; ++i) after[i] = q[i] + change[i];
+    const double missing = missing_length(after);
+    for (int i = 0; i < 4; ++i) change[i] += missing * after[i];
+  }
+
   void momentum_residual(const double *torque_space, const double *rows, double *residual) const
   {
     const double *seconds = rows + 2 * Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM;
@@ -422,14 +435,13 @@ class Integrator : public Kinematics {
   Correction correct_momenta(Momenta<CARRIES> history, const RigidBody &body, const Load &load,
                              const double *axes, const Residual &total, double *rows) const
   {
-    double *q = rows + Scheme::SECOND_QUATERNION, turn[3], angle[3], change[4], torque_body[3];
+    double turn[3], angle[3], change[4], torque_body[3];
     turn_of(body, axes, total.q, turn);
     for (int i = 0; i < 3; ++i) angle[i] = c.driven[0] * turn[i];
     history.template correct<3>(rows, n, c.driven.data(), Scheme::POSITION, total.x);
     history.template correct<3, 1>(rows, n, c.driven.data(), Scheme::ANGULAR_MOMENTUM, total.q);
-    quaternion_rate(q, angle, change);
+    small_turn(rows + Scheme::SECOND_QUATERNION, angle, change);
     history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
-    project_row(history, rows);
     to_body(axes, load.torque_space, torque_body);
     return {c.driven[0] * dot3(load.force, total.x) + dot3(torque_body, angle),
             c.weight2 * dot3(total.x, total.x), 0.25 * c.weight2 * dot3(turn, turn)};
@@ -630,12 +642,19 @@ class Integrator : public Kinematics {
     history.template add<4>(rows, n, 1, Scheme::SECOND_QUATERNION, change);
   }
 
+  /// 1/|q| - 1.
+  static double missing_length(const double *q)
+  {
+    const double norm2 = dot4(q, q), part = 1.0 - norm2;
+    if (std::fabs(part) < 1.0e-4) return part * (0.5 + part * (0.375 + part * 0.3125));
+    const double norm = std::sqrt(norm2);
+    return part / (norm * (1.0 + norm));
+  }
+
   /// |q| = 1 (Eq. 3), as an increment, so that a compensated row keeps its digits.
   template <class History> void project_row(History history, double *rows) const
   {
-    const double *q = rows + scheme.quaternion();
-    const double norm2 = dot4(q, q), norm = std::sqrt(norm2);
-    const double missing = (1.0 - norm2) / (norm * (1.0 + norm));
+    const double *q = rows + scheme.quaternion(), missing = missing_length(q);
     double change[4];
     for (int i = 0; i < 4; ++i) change[i] = missing * q[i];
     history.template add<4>(rows, n, 0, scheme.quaternion(), change);

@@ -10,54 +10,28 @@
 
 using namespace LAMMPS_NS::GearQuat;
 
-/// A number for each of the bodies.
+/// A number for each of the bodies.  Functions are inline in variants for several processors.
 #if defined(__GNUC__)
 using Lanes = double __attribute__((vector_size(Turn::LANES * sizeof(double))));
+#define GEAR_QUAT_INLINE inline __attribute__((always_inline))
+static GEAR_QUAT_INLINE void set(Lanes &a, int lane, double value)
+{
+  a[lane] = value;
+}
+static GEAR_QUAT_INLINE double get(const Lanes &a, int lane)
+{
+  return a[lane];
+}
 #else
-struct Lanes {
-  double of[Turn::LANES];
-  double &operator[](int lane) { return of[lane]; }
-  double operator[](int lane) const { return of[lane]; }
-};
-template <class Act> static Lanes each(Act act)
+using Lanes = double;
+#define GEAR_QUAT_INLINE inline
+static void set(Lanes &a, int, double value)
 {
-  Lanes found;
-  for (int lane = 0; lane < Turn::LANES; ++lane) found[lane] = act(lane);
-  return found;
+  a = value;
 }
-static Lanes operator+(Lanes a, Lanes b)
+static double get(const Lanes &a, int)
 {
-  return each([&](int k) {
-    return a[k] + b[k];
-  });
-}
-static Lanes operator-(Lanes a, Lanes b)
-{
-  return each([&](int k) {
-    return a[k] - b[k];
-  });
-}
-static Lanes operator*(Lanes a, Lanes b)
-{
-  return each([&](int k) {
-    return a[k] * b[k];
-  });
-}
-static Lanes operator*(double a, Lanes b)
-{
-  return each([&](int k) {
-    return a * b[k];
-  });
-}
-static Lanes operator-(Lanes a)
-{
-  return each([&](int k) {
-    return -a[k];
-  });
-}
-static Lanes &operator+=(Lanes &a, Lanes b)
-{
-  return a = a + b;
+  return a;
 }
 #endif
 
@@ -65,158 +39,189 @@ struct Vector {
   Lanes x, y, z;
 };
 
-/// The coefficients of p = (v, c) for all lanes, from the first on.  Components are written out:
-/// compilers do not keep hundreds of small functions inline.
-template <int ORDER> struct Rotation {
-  Vector v[ORDER + 1];
-  Lanes c[ORDER + 1];
+/// The coefficients of p = (v, c) and l for all lanes, up to an order.
+struct Series {
+  Lanes q[4];
+  Vector per_inertia, l[Turn::MOST], v[Turn::MOST + 1];
+  Lanes c[Turn::MOST + 1];
 
-  void find(const Lanes *per_inertia, const Vector *l)
-  {
-    Vector w[ORDER], u[ORDER];
-    const Lanes zero = {};
-    w[0] = {per_inertia[0] * l[0].x, per_inertia[1] * l[0].y, per_inertia[2] * l[0].z};
-    v[1] = {0.5 * w[0].x, 0.5 * w[0].y, 0.5 * w[0].z};
-    c[1] = zero;
-#pragma GCC unroll 10
-    for (int k = 1; k < ORDER; ++k) {
-      Lanes x = zero, y = zero, z = zero, down = zero;
-#pragma GCC unroll 10
-      for (int j = 1; j <= k; ++j) {
-        x += v[j].y * l[k - j].z - v[j].z * l[k - j].y;
-        y += v[j].z * l[k - j].x - v[j].x * l[k - j].z;
-        z += v[j].x * l[k - j].y - v[j].y * l[k - j].x;
-      }
-      u[k] = {x, y, z};
-      x = -x, y = -y, z = -z;
-#pragma GCC unroll 10
-      for (int j = 1; j < k; ++j) {
-        x += v[j].y * u[k - j].z - v[j].z * u[k - j].y - c[j] * u[k - j].x;
-        y += v[j].z * u[k - j].x - v[j].x * u[k - j].z - c[j] * u[k - j].y;
-        z += v[j].x * u[k - j].y - v[j].y * u[k - j].x - c[j] * u[k - j].z;
-      }
-      w[k] = {per_inertia[0] * (l[k].x + 2.0 * x), per_inertia[1] * (l[k].y + 2.0 * y),
-              per_inertia[2] * (l[k].z + 2.0 * z)};
-      x = w[k].x, y = w[k].y, z = w[k].z;
-#pragma GCC unroll 10
-      for (int j = 1; j <= k; ++j) {
-        x += v[j].y * w[k - j].z - v[j].z * w[k - j].y + c[j] * w[k - j].x;
-        y += v[j].z * w[k - j].x - v[j].x * w[k - j].z + c[j] * w[k - j].y;
-        z += v[j].x * w[k - j].y - v[j].y * w[k - j].x + c[j] * w[k - j].z;
-        down += v[j].x * w[k - j].x + v[j].y * w[k - j].y + v[j].z * w[k - j].z;
-      }
-      const double part = 0.5 / (k + 1);
-      v[k + 1] = {part * x, part * y, part * z};
-      c[k + 1] = -part * down;
-    }
-  }
+  GEAR_QUAT_INLINE void begin(int count, const RigidBody *const *bodies, const double *const *rows,
+                              int stride, int terms);
+  GEAR_QUAT_INLINE void find(int terms, int order);
 };
 
-/// p - (0, 0, 0, 1) at the end, with the terms of each lane.
-template <int ORDER>
-static void sum(const int *orders, const Lanes *per_inertia, const Vector *l, Lanes *p)
+/// Reads q and L.  A lane without a body repeats the last one.
+void Series::begin(int count, const RigidBody *const *bodies, const double *const *rows, int stride,
+                   int terms)
 {
-  Rotation<ORDER> rotation;
-  rotation.find(per_inertia, l);
-  Lanes zero = {}, counts = zero;
-  p[0] = p[1] = p[2] = p[3] = zero;
-#pragma GCC unroll 10
-  for (int k = ORDER; k > 0; --k) {
-    for (int lane = 0; lane < Turn::LANES; ++lane) counts[lane] = k <= orders[lane];
-    p[0] += counts * rotation.v[k].x;
-    p[1] += counts * rotation.v[k].y;
-    p[2] += counts * rotation.v[k].z;
-    p[3] += counts * rotation.c[k];
+  const Lanes zero = {}, one = zero + 1.0;
+  const auto body_in = [count](int lane) {
+    return std::min(lane, count - 1);
+  };
+  Lanes inertia[3];
+#pragma GCC unroll 4
+  for (int lane = 0; lane < Turn::LANES; ++lane) {
+    const int body = body_in(lane);
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) set(inertia[i], lane, bodies[body]->inertia[i]);
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) set(q[i], lane, rows[body][i]);
+  }
+#pragma GCC unroll 3
+  for (Lanes &moment : inertia)
+    moment = moment > zero ? one / (moment > zero ? moment : one) : zero;
+  per_inertia = {inertia[0], inertia[1], inertia[2]};
+
+  // A(q), see rotation_matrix()
+
+  const Lanes s = 2.0 / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  const Lanes xx = s * q[0] * q[0], yy = s * q[1] * q[1], zz = s * q[2] * q[2];
+  const Lanes xy = s * q[0] * q[1], xz = s * q[0] * q[2], yz = s * q[1] * q[2];
+  const Lanes xw = s * q[0] * q[3], yw = s * q[1] * q[3], zw = s * q[2] * q[3];
+  const Lanes rest = s * q[3] * q[3] - 1.0;
+  for (int k = 0; k < terms; ++k) {
+    Lanes x, y, z;
+#pragma GCC unroll 4
+    for (int lane = 0; lane < Turn::LANES; ++lane) {
+      const double *row = rows[body_in(lane)] + (k + 1) * stride;
+      set(x, lane, row[0]), set(y, lane, row[1]), set(z, lane, row[2]);
+    }
+    x *= k + 1.0, y *= k + 1.0, z *= k + 1.0;
+    l[k] = {(xx + rest) * x + (xy + zw) * y + (xz - yw) * z,
+            (xy - zw) * x + (yy + rest) * y + (yz + xw) * z,
+            (xz + yw) * x + (yz - xw) * y + (zz + rest) * z};
   }
 }
 
-static void sum(int order, const int *orders, const Lanes *per_inertia, const Vector *l, Lanes *p)
+/// The sums over j up to k - 1 do not depend on the last terms, which follow in a chain.
+void Series::find(int terms, int order)
 {
-  switch (order) {    // loops of a known length are unrolled
-    case 5:
-      return sum<5>(orders, per_inertia, l, p);
-    case 6:
-      return sum<6>(orders, per_inertia, l, p);
-    case 7:
-      return sum<7>(orders, per_inertia, l, p);
-    case 8:
-      return sum<8>(orders, per_inertia, l, p);
-    case 9:
-      return sum<9>(orders, per_inertia, l, p);
-    case 10:
-      return sum<10>(orders, per_inertia, l, p);
-    case 12:
-      return sum<12>(orders, per_inertia, l, p);
-    case 16:
-      return sum<16>(orders, per_inertia, l, p);
-    default:
-      return sum<Turn::MOST>(orders, per_inertia, l, p);
+  const Lanes zero = {};
+  Vector w[Turn::MOST], u[Turn::MOST];
+  for (int k = terms; k < order; ++k) l[k] = {zero, zero, zero};
+  w[0] = {per_inertia.x * l[0].x, per_inertia.y * l[0].y, per_inertia.z * l[0].z};
+  v[1] = {0.5 * w[0].x, 0.5 * w[0].y, 0.5 * w[0].z};
+  c[1] = zero;
+  for (int k = 1; k < order; ++k) {
+    Lanes ux = zero, uy = zero, uz = zero, x = zero, y = zero, z = zero;
+    Lanes rx = zero, ry = zero, rz = zero, down = zero;
+    for (int j = 1; j < k; ++j) {
+      const Vector &a = v[j], &b = l[k - j], &d = u[k - j], &e = w[k - j];
+      ux += a.y * b.z - a.z * b.y;
+      uy += a.z * b.x - a.x * b.z;
+      uz += a.x * b.y - a.y * b.x;
+      x += a.y * d.z - a.z * d.y - c[j] * d.x;
+      y += a.z * d.x - a.x * d.z - c[j] * d.y;
+      z += a.x * d.y - a.y * d.x - c[j] * d.z;
+      rx += a.y * e.z - a.z * e.y + c[j] * e.x;
+      ry += a.z * e.x - a.x * e.z + c[j] * e.y;
+      rz += a.x * e.y - a.y * e.x + c[j] * e.z;
+      down += a.x * e.x + a.y * e.y + a.z * e.z;
+    }
+    const Vector &a = v[k], &b = l[0], &e = w[0];
+    u[k] = {ux + (a.y * b.z - a.z * b.y), uy + (a.z * b.x - a.x * b.z),
+            uz + (a.x * b.y - a.y * b.x)};
+    w[k] = {per_inertia.x * (l[k].x + 2.0 * (x - u[k].x)),
+            per_inertia.y * (l[k].y + 2.0 * (y - u[k].y)),
+            per_inertia.z * (l[k].z + 2.0 * (z - u[k].z))};
+    rx += a.y * e.z - a.z * e.y + c[k] * e.x;
+    ry += a.z * e.x - a.x * e.z + c[k] * e.y;
+    rz += a.x * e.y - a.y * e.x + c[k] * e.z;
+    down += a.x * e.x + a.y * e.y + a.z * e.z;
+    const double part = 0.5 / (k + 1);
+    v[k + 1] = {part * (w[k].x + rx), part * (w[k].y + ry), part * (w[k].z + rz)};
+    c[k + 1] = -part * down;
   }
 }
+
+/// W(q) (p - (0, 0, 0, 1)) at the end, with the terms of each lane.
+template <class Orders>
+static GEAR_QUAT_INLINE void find_changes(const Orders &orders, int count,
+                                          const RigidBody *const *bodies, const double *const *rows,
+                                          int stride, double (*change)[4])
+{
+  Series series;
+  series.begin(count, bodies, rows, stride, orders.terms);
+  const Vector &per_inertia = series.per_inertia, &l = series.l[0];
+  const Lanes wx = per_inertia.x * l.x, wy = per_inertia.y * l.y, wz = per_inertia.z * l.z;
+  const Lanes angle2 = wx * wx + wy * wy + wz * wz, zero = {}, one = zero + 1.0;
+  Lanes order_of = zero, p[4] = {zero, zero, zero, zero};
+  int most = 0;
+#pragma GCC unroll 4
+  for (int lane = 0; lane < Turn::LANES; ++lane) {
+    const int order = orders.of(get(angle2, lane));
+    set(order_of, lane, order);
+    most = std::max(most, order);
+  }
+  series.find(orders.terms, most);
+  for (int k = most; k > 0; --k) {
+    const Lanes counts = order_of >= zero + k ? one : zero;
+    p[0] += counts * series.v[k].x;
+    p[1] += counts * series.v[k].y;
+    p[2] += counts * series.v[k].z;
+    p[3] += counts * series.c[k];
+  }
+  const Lanes *q = series.q;
+  const Lanes turned[4] = {q[3] * p[0] - q[2] * p[1] + q[1] * p[2] + q[0] * p[3],
+                           q[2] * p[0] + q[3] * p[1] - q[0] * p[2] + q[1] * p[3],
+                           q[0] * p[1] - q[1] * p[0] + q[3] * p[2] + q[2] * p[3],
+                           q[3] * p[3] - q[0] * p[0] - q[1] * p[1] - q[2] * p[2]};
+  for (int body = 0; body < count; ++body)
+    for (int i = 0; i < 4; ++i) change[body][i] = get(turned[i], body);
+}
+
+#if defined(__GNUC__) && defined(__x86_64__)
+#define GEAR_QUAT_AVX2
+template <class Orders>
+__attribute__((target("avx2"))) static void
+find_changes_avx2(const Orders &orders, int count, const RigidBody *const *bodies,
+                  const double *const *rows, int stride, double (*change)[4])
+{
+  find_changes(orders, count, bodies, rows, stride, change);
+}
+#endif
 
 /// The series of a free asymmetric top has a finite radius of convergence: its error is about
 /// (angle/4)^(order + 1).
-Turn::Turn(int terms, double accuracy) : terms(terms)
+Turn::Turn(int terms, int least, double accuracy)
 {
-  for (int k = 0; k < KINDS; ++k) {
-    const double angle = 4.0 * std::pow(accuracy, 1.0 / (ORDERS[k] + 1));
-    fastest[k] = ORDERS[k] > terms ? angle * angle : -1.0;    // not even at rest
+  orders.terms = terms;
+  orders.least = least;
+  for (int order = 0; order <= MOST; ++order) {
+    const double angle = 4.0 * std::pow(accuracy, 1.0 / (order + 1));
+    orders.fastest[order] = angle * angle;
   }
 }
 
-int Turn::order_for(double angle2) const
+void Turn::changes(int count, const RigidBody *const *bodies, const double *const *rows, int stride,
+                   double (*change)[4]) const
 {
-  for (int k = 0; k < KINDS; ++k)
-    if (angle2 <= fastest[k]) return ORDERS[k];
-  return MOST;
+#if defined(GEAR_QUAT_AVX2)
+  static const bool wide = __builtin_cpu_supports("avx2");
+  if (wide) return find_changes_avx2(orders, count, bodies, rows, stride, change);
+#endif
+  find_changes(orders, count, bodies, rows, stride, change);
 }
 
-/// l = A(q) L of one body in its lane, and 1/I.  Returns the square of the angle of the step.
-static double along_axes(const RigidBody &body, const Turn::Momentum &momentum, int terms,
-                         const double *q, int lane, Vector *l, Lanes *per_inertia)
-{
-  double a[9], inverse[3], along[3], angle2 = 0.0;
-  inverse_moments(body, inverse);
-  rotation_matrix(q, dot4(q, q), a);
-  for (int k = 0; k < terms; ++k) {
-    to_body(a, momentum[k], along);
-    l[k].x[lane] = along[0];
-    l[k].y[lane] = along[1];
-    l[k].z[lane] = along[2];
-    if (k > 0) continue;
-    for (int i = 0; i < 3; ++i) angle2 += inverse[i] * along[i] * inverse[i] * along[i];
-  }
-  for (int i = 0; i < 3; ++i) per_inertia[i][lane] = inverse[i];
-  return angle2;
-}
+/// Rows for changes(), with a stride of 4.
+struct RowsOf {
+  double row[Turn::MOST + 1][4];
+  const double *first = row[0];
 
-void Turn::changes(int count, const RigidBody *const *bodies, const Momentum *momenta,
-                   const double *const *q, double (*change)[4]) const
-{
-  Vector l[MOST];
-  Lanes per_inertia[3], p[4];
-  int orders[LANES], order = 0;
-  for (int lane = 0; lane < LANES; ++lane) {
-    const int body = std::min(lane, count - 1);    // a lane without a body repeats the last one
-    orders[lane] =
-        order_for(along_axes(*bodies[body], momenta[body], terms, q[body], lane, l, per_inertia));
-    order = std::max(order, orders[lane]);
+  RowsOf(const double *q, const Turn::Momentum &momentum, int terms)
+  {
+    std::copy_n(q, 4, row[0]);
+    for (int k = 0; k < terms; ++k)
+      for (int i = 0; i < 3; ++i) row[k + 1][i] = momentum[k][i] / (k + 1);
   }
-  const Lanes zero = {};
-  for (int k = terms; k < order; ++k) l[k] = {zero, zero, zero};
-  sum(order, orders, per_inertia, l, p);
-  for (int body = 0; body < count; ++body) {
-    const double turned[4] = {p[0][body], p[1][body], p[2][body], p[3][body]};
-    w_times(q[body], turned, change[body]);
-  }
-}
+};
 
 void Turn::advance(const RigidBody &body, const Momentum &momentum, double *q) const
 {
   const RigidBody *one = &body;
-  const double *before = q;
+  const RowsOf rows(q, momentum, orders.terms);
   double change[1][4];
-  changes(1, &one, &momentum, &before, change);
+  changes(1, &one, &rows.first, 4, change);
   for (int i = 0; i < 4; ++i) q[i] += change[0][i];
   project_norm(q);
 }
@@ -224,16 +229,15 @@ void Turn::advance(const RigidBody &body, const Momentum &momentum, double *q) c
 void Turn::coefficients(const RigidBody &body, const Momentum &momentum, int terms, const double *q,
                         double (*found)[4])
 {
-  Vector l[MOST] = {};
-  Lanes per_inertia[3];
-  Rotation<MOST> rotation;
-  for (int lane = 0; lane < LANES; ++lane)
-    along_axes(body, momentum, terms, q, lane, l, per_inertia);
-  rotation.find(per_inertia, l);
-  for (int i = 0; i < 4; ++i) found[0][i] = q[i];
+  const RigidBody *one = &body;
+  const RowsOf rows(q, momentum, terms);
+  Series series;
+  series.begin(1, &one, &rows.first, 4, terms);
+  series.find(terms, MOST);
+  std::copy_n(q, 4, found[0]);
   for (int k = 1; k <= MOST; ++k) {
-    const double p[4] = {rotation.v[k].x[0], rotation.v[k].y[0], rotation.v[k].z[0],
-                         rotation.c[k][0]};
+    const Vector &v = series.v[k];
+    const double p[4] = {get(v.x, 0), get(v.y, 0), get(v.z, 0), get(series.c[k], 0)};
     w_times(q, p, found[k]);
   }
 }

@@ -14,7 +14,10 @@
 
    The Taylor coefficients of these functions follow from each other, one order after the other
    (A. Griewank and A. Walther, Evaluating Derivatives, SIAM 2008, Chap. 13).  Time is in units of
-   the step.  The cost grows with the square of the order. */
+   the step.  The cost grows with the square of the order.
+
+   Several bodies turn side by side, in the vector registers of the processor.  The operations of a
+   body are the same in registers of any length, and so is its result. */
 
 #ifndef GEAR_QUAT_TURN_H
 #define GEAR_QUAT_TURN_H
@@ -26,20 +29,26 @@ namespace LAMMPS_NS::GearQuat {
 class Turn {
  public:
   static constexpr int MOST = 24;    ///< order of the series, and terms of L
-  static constexpr int LANES = 2;    ///< bodies that turn side by side
+#if defined(__GNUC__)
+  static constexpr int LANES = 4;    ///< bodies that turn side by side
+#else
+  static constexpr int LANES = 1;
+#endif
 
   /// The coefficients of h L(t) along the axes of space.
   using Momentum = double[MOST][3];
 
-  /// terms: known coefficients of L, the others are zero.  The order of the series is larger than
-  /// this, so that all of them count, and large enough for a relative error below `accuracy` of a
-  /// free rotation.
-  explicit Turn(int terms, double accuracy = 1.0e-14);
+  /// terms: known coefficients of L, the others are zero.  The order of the series is at least
+  /// `least`, and large enough for a relative error below `accuracy` of a free rotation.
+  Turn(int terms, int least, double accuracy);
+  /// As accurate as a series can be.
+  explicit Turn(int terms) : Turn(terms, MOST, 1.0) {}
 
-  /// The changes of the quaternions of up to LANES bodies in the step.  A result does not depend on
-  /// the others, and has no rounding error of q.  q: unit quaternions at the beginning.
-  void changes(int count, const RigidBody *const *bodies, const Momentum *momenta,
-               const double *const *q, double (*change)[4]) const;
+  /// The changes of the quaternions of 1 to LANES bodies in the step.  A result does not depend on
+  /// the others, and has no rounding error of q.  rows: of each body, `stride` numbers apart; first
+  /// the unit quaternion at the beginning, then the coefficients of the integral of h L(t).
+  void changes(int count, const RigidBody *const *bodies, const double *const *rows, int stride,
+               double (*change)[4]) const;
   /// q: the unit quaternion of one body, at the beginning and then at the end of the step.
   void advance(const RigidBody &body, const Momentum &momentum, double *q) const;
 
@@ -48,13 +57,18 @@ class Turn {
                            const double *q, double (*found)[4]);
 
  private:
-  static constexpr int ORDERS[] = {5, 6, 7, 8, 9, 10, 12, 16, MOST};
-  static constexpr int KINDS = sizeof(ORDERS) / sizeof(*ORDERS);
+  /// The orders of bodies.
+  struct Orders {
+    int terms, least;
+    double fastest[MOST + 1];    ///< squared angle of a step up to which an order is sufficient
 
-  int terms;
-  double fastest[KINDS];    ///< squared angle of a step up to which an order is sufficient
-
-  int order_for(double angle2) const;
+    int of(double angle2) const
+    {
+      int order = least;
+      while (order < MOST && angle2 > fastest[order]) ++order;
+      return order;
+    }
+  } orders;
 };
 
 }    // namespace LAMMPS_NS::GearQuat
