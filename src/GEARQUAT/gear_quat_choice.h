@@ -5,17 +5,18 @@
 
 /* Choice of the number of values for a simulation.
 
-   The fast edge z of a motion is the frequency of its fastest vibrations times the step.  With y the
-   positions and orientations of all bodies, weighted by masses and moments of inertia,
+   The fast edge z of a motion is the frequency of its fastest vibrations times the step.  With the
+   accelerations y'' of all bodies, and for rotations the torques along the axes of space, weighted
+   by masses and inverse moments of inertia,
 
      z^4 = sum (|h^4 y''''|^2 + |h^5 y'''''|^2) / sum (|h^2 y''|^2 + |h^3 y'''|^2).
 
    For a single vibration z is exact at any phase; for many vibrations z corresponds to the upper
-   end of their spectrum.  Accelerations that change velocities by less than rounding count as none.
-   A start has computed these derivatives.  The rows of a history cannot replace them: with tuned
-   coefficients the errors of the higher rows make z up to twice as large.  Where derivatives are
-   unknown, the mean square frequency of rotations, the ratio of the sums of
-   torque^2/I and I omega^2, is used instead.
+   end of their spectrum.  A free rotation has none.  Accelerations that change velocities by less
+   than rounding count as none.  A start has computed these derivatives.  The rows of a history
+   cannot replace them: with tuned coefficients the errors of the higher rows make z up to twice as
+   large.  Where derivatives are unknown, the mean square frequency of rotations, the ratio of the
+   sums of torque^2/I and I omega^2, is used instead.
 
    More values give a higher order, but a narrower range of frequencies that conserves energy.
    The crossover from nine to five values follows from measured drifts of liquids (doc/theory.md).
@@ -46,11 +47,23 @@ class MotionSums {
   /// |omega|^2 of the body that turns fastest; its maximum is taken over bodies
   double omega2 = 0.0;
 
+  static constexpr int LEVELS = 4;    ///< derivatives in use, from the second on
+  /// h^j/j! y^(j) of a body, where the angular momentum along the axes of space is the y' of
+  /// rotation: row j of a history of formulation momentum.
+  using Derivative = std::array<double, 6>;
+  static Derivative derivative(const TaylorSeries &series, int j)
+  {
+    const double *x = series.c[j], *rate = series.momentum[j - 1];
+    return {x[0], x[1], x[2], rate[0] / j, rate[1] / j, rate[2] / j};
+  }
+
   /// A body at the beginning of a series with steps of this length.
   void add(const RigidBody &body, const BodyState &state, const TaylorSeries &series, double step)
   {
-    const double *rows[] = {series.c[2], series.c[3], series.c[4], series.c[5]};
-    if (series.terms > 4) add_derivatives(body, state, rows, 3, series.terms > 5 ? 4 : 3, step);
+    Derivative derivatives[LEVELS];
+    const int known = std::min(series.terms - 2, LEVELS);
+    for (int k = 0; k < known; ++k) derivatives[k] = derivative(series, k + 2);
+    if (known > 2) add_derivatives(body, state, derivatives, known, step);
     add_spin(body, state);
   }
   /// Adds only the angular velocity of a body.
@@ -66,23 +79,19 @@ class MotionSums {
     add_spin(body, state);
   }
 
-  /// h^2/2 y'' of positions and quaternion, as in the second row of a history.
-  using Acceleration = std::array<double, 7>;
-  static constexpr int LEVELS = 4;
-  /// A body with accelerations after four steps of this length in a row.  Differences take the
+  /// A body with second derivatives after four steps of this length in a row.  Differences take the
   /// place of derivatives in the middle; true_edge() corrects for their length.
-  void add(const RigidBody &body, const BodyState &state, const Acceleration *rows, double h)
+  void add(const RigidBody &body, const BodyState &state, const Derivative *seconds, double h)
   {
-    double size[4][7];    // h^k/k! y^(k)
-    for (int i = 0; i < 7; ++i) {
-      const double a = rows[0][i], b = rows[1][i], c = rows[2][i], d = rows[3][i];
-      size[0][i] = 0.5 * (b + c);
-      size[1][i] = (c - b) / 3.0;
-      size[2][i] = (a - b - c + d) / 24.0;
-      size[3][i] = (d - a + 3.0 * (b - c)) / 60.0;
+    Derivative derivatives[LEVELS];
+    for (size_t i = 0; i < seconds->size(); ++i) {
+      const double a = seconds[0][i], b = seconds[1][i], c = seconds[2][i], d = seconds[3][i];
+      derivatives[0][i] = 0.5 * (b + c);
+      derivatives[1][i] = (c - b) / 3.0;
+      derivatives[2][i] = (a - b - c + d) / 24.0;
+      derivatives[3][i] = (d - a + 3.0 * (b - c)) / 60.0;
     }
-    const double *derivatives[] = {size[0], size[1], size[2], size[3]};
-    add_derivatives(body, state, derivatives, 3, 4, h);
+    add_derivatives(body, state, derivatives, LEVELS, h);
     add_spin(body, state);
   }
   /// The fast edge from its value by differences, which is 2 sin(z/2) for a vibration of any phase.
@@ -114,19 +123,21 @@ class MotionSums {
   /// from rounding: the forces between atoms of a body cancel only up to rounding.
   static constexpr double LEAST_CHANGE = 1.0e-10;
 
-  /// rows: 2 to 5, h^k/k! times the derivatives; `known` of them are known.  quaternion: its
-  /// column.
-  void add_derivatives(const RigidBody &body, const BodyState &state, const double *const *rows,
-                       int quaternion, int known, double h)
+  /// The first `known` derivatives.
+  void add_derivatives(const RigidBody &body, const BodyState &state, const Derivative *derivatives,
+                       int known, double h)
   {
     constexpr double FACTORIAL[] = {2.0, 6.0, 24.0, 120.0};
     const double *inertia = body.inertia;
-    const int axes = std::max(1, body.rotational_freedoms());
-    const double of_turn = 4.0 * (inertia[0] + inertia[1] + inertia[2]) / axes;
-    double size[4] = {};    // squares of h^k y^(k)
+    double axes[9], per_inertia[3], size[LEVELS] = {};    // squares of h^k y^(k)
+    rotation_matrix(state.q, dot4(state.q, state.q), axes);
+    inverse_moments(body, per_inertia);
     for (int k = 0; k < known; ++k) {
-      const double *x = rows[k], *q = rows[k] + quaternion;
-      size[k] = FACTORIAL[k] * FACTORIAL[k] * (body.mass * dot3(x, x) + of_turn * dot4(q, q));
+      const double *x = derivatives[k].data();
+      double along[3], all = body.mass * dot3(x, x);
+      to_body(axes, x + 3, along);
+      for (int i = 0; i < 3; ++i) all += per_inertia[i] * along[i] * along[i];
+      size[k] = FACTORIAL[k] * FACTORIAL[k] * all;
     }
     const double per_h4 = 1.0 / (h * h * h * h);    // in units of y''
     sums[0] += per_h4 * per_h4 * (size[2] + size[3]);
@@ -159,9 +170,9 @@ struct ChoiceOfValues {
     Reason reason;
   };
 
-  // second formulation, tuned: radians in a step up to which nine values are best; radians beyond
-  // which no number conserves the energy for long; radians at the step that is advised then; and
-  // the factor of the hysteresis of a present choice
+  // tuned: radians in a step up to which nine values are best; radians beyond which no number
+  // conserves the energy for long; radians at the step that is advised then; and the factor of the
+  // hysteresis of a present choice.  Turns only in formulation second: momentum turns exactly
 
   static constexpr double EDGE_OF_NINE = 0.25, TURN_OF_NINE = 0.4;
   static constexpr double LONGEST_EDGE = 0.6, LONGEST_TURN = 0.5;
@@ -209,6 +220,7 @@ struct ChoiceOfValues {
     const double longest = shakes() ? longest_edge(scheme) : HUGE_VAL;
     const double by_edge = edge > longest ? ADVISED_PART * longest / edge : 1.0;
     if (!automatic || !scheme.tuned) return by_edge;
+    if (scheme.momentum()) return by_edge;
     const double most = scheme.first() ? FIRST_LONGEST_TURN : LONGEST_TURN;
     const double advised = scheme.first() ? FIRST_ADVISED_TURN : ADVISED_TURN;
     return std::min(by_edge, turn > most ? advised / turn : 1.0);
@@ -227,7 +239,8 @@ struct ChoiceOfValues {
   Scheme by_motion(Scheme scheme, int present) const
   {
     const double band = present == 9 ? BAND : present == 5 ? 1.0 / BAND : 1.0;
-    scheme.rows = edge <= band * EDGE_OF_NINE && turn <= band * TURN_OF_NINE ? 9 : 5;
+    const bool follows_turn = scheme.momentum() || turn <= band * TURN_OF_NINE;
+    scheme.rows = edge <= band * EDGE_OF_NINE && follows_turn ? 9 : 5;
     return scheme;
   }
 

@@ -50,8 +50,7 @@ void Vibrations::record(double h)
     if (one.steps == MotionSums::LEVELS) continue;
     const TaylorSeries series =
         local_series(bodies.rigid_of(ibody), bodies.state_of(ibody), bodies.acting(ibody), h);
-    std::copy_n(series.c[2], one.rows[one.steps].size(), one.rows[one.steps].begin());
-    ++one.steps;
+    one.seconds[one.steps++] = MotionSums::derivative(series, 2);
   }
 }
 
@@ -63,7 +62,7 @@ MotionSums Vibrations::sums()
     const RigidBody &rigid = bodies.rigid_of(ibody);
     const BodyState &state = bodies.state_of(ibody);
     if (one != records.end() && one->second.steps == MotionSums::LEVELS)
-      here.add(rigid, state, one->second.rows.data(), width);
+      here.add(rigid, state, one->second.seconds, width);
     else
       here.add(rigid, state);
   }

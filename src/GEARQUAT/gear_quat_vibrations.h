@@ -41,7 +41,7 @@ class Vibrations : protected Pointers {
  private:
   struct Record {
     int steps = 0;
-    std::array<MotionSums::Acceleration, MotionSums::LEVELS> rows = {};
+    MotionSums::Derivative seconds[MotionSums::LEVELS] = {};
   };
   const Bodies &bodies;
   bigint first = -1;                             ///< first step of the present run
