@@ -15,9 +15,14 @@
    With Scheme::any_norm() gear_quat_any_norm.h replaces the second equation.
    Momentum formulation, 6 components and the quaternion:
      x'' = F/m,  L' = torque along the axes of space
-   The quaternion turns exactly with the predicted L(t) (gear_quat_turn.h), then by the small
-   rotation I^-1 A c_0 r with the residual r of the rows of L.  These have the coefficients of the
-   rows of x, of which L' is the second derivative: the angles follow L as x follows x'.
+   The quaternion turns exactly with the predicted L(t) (gear_quat_turn.h), then by a small rotation
+   from the residual r of the rows of L.  These have the coefficients of the rows of x, of which L'
+   is the second derivative: the angles follow L as x follows x'.
+   With a = I^-1 A r, m = h A L and w = I^-1 m, all along the principal axes, the small rotation is
+     c_0 a + kappa (w x a - I^-1 (w x A r + m x a))
+   The error of the predicted L(t) changes the rotation also by its first moment about the middle of
+   the step, in proportion to L.  This would not be symmetric in time and damp librations; the term
+   with kappa, the `moment` of gear_quat_tuned.h, cancels it.
 
    Equation numbers: Pratt & Bin Mohamad Zaini.  Once per step the host calls predict(),
    body_state(), [forces] and correct(), or for a body without moments of inertia the functions
@@ -385,15 +390,27 @@ class Integrator : public Kinematics {
 
   // the momentum formulation
 
-  /// I^-1 A r, along the principal axes.
-  static void turn_of(const RigidBody &body, const double *axes, const double *residual,
-                      double *angle_body)
+  /// The small rotation of the correction, along the principal axes.  Returns |a|^2.
+  double small_rotation(const RigidBody &body, const double *axes, const double *rows,
+                        const double *residual, double *angle_body) const
   {
-    double per_inertia[3];
-    to_body(axes, residual, angle_body);
+    double per_inertia[3], along[3], a[3], m[3], w[3], bent[3], lever[3], turned[3];
     inverse_moments(body, per_inertia);
+    to_body(axes, residual, along);
+    to_body(axes, rows + Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM, m);
 #pragma GCC unroll 3
-    for (int i = 0; i < 3; ++i) angle_body[i] *= per_inertia[i];
+    for (int i = 0; i < 3; ++i) {
+      a[i] = per_inertia[i] * along[i];
+      w[i] = per_inertia[i] * m[i];
+    }
+    cross3(w, along, bent);
+    cross3(m, a, lever);
+    cross3(w, a, turned);
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i)
+      angle_body[i] =
+          c.driven[0] * a[i] + c.moment * (turned[i] - per_inertia[i] * (bent[i] + lever[i]));
+    return dot3(a, a);
   }
 
   /// The change of q by a small turn, of which the result has |q| = 1.
@@ -435,16 +452,15 @@ class Integrator : public Kinematics {
   Correction correct_momenta(Momenta<CARRIES> history, const RigidBody &body, const Load &load,
                              const double *axes, const Residual &total, double *rows) const
   {
-    double turn[3], angle[3], change[4], torque_body[3];
-    turn_of(body, axes, total.q, turn);
-    for (int i = 0; i < 3; ++i) angle[i] = c.driven[0] * turn[i];
+    double angle[3], change[4], torque_body[3];
+    const double error2 = small_rotation(body, axes, rows, total.q, angle);
     history.template correct<3>(rows, n, c.driven.data(), Scheme::POSITION, total.x);
     history.template correct<3, 1>(rows, n, c.driven.data(), Scheme::ANGULAR_MOMENTUM, total.q);
     small_turn(rows + Scheme::SECOND_QUATERNION, angle, change);
     history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
     to_body(axes, load.torque_space, torque_body);
     return {c.driven[0] * dot3(load.force, total.x) + dot3(torque_body, angle),
-            c.weight2 * dot3(total.x, total.x), 0.25 * c.weight2 * dot3(turn, turn)};
+            c.weight2 * dot3(total.x, total.x), 0.25 * c.weight2 * error2};
   }
 
   template <int CARRIES, class Damper>

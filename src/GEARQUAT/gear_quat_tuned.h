@@ -93,6 +93,15 @@ class SteadyDeviations {
   /// initial values, relative to the residual.
   long double local_error(long double c0) const { return c0 + (sum(0, e) - 1.0L) / residual; }
 
+  /// The integral over a step of the error of row 0 as predicted, about the middle of its ends,
+  /// relative to the residual.  c0: of the correction at the end.
+  long double moment(long double c0) const
+  {
+    long double integral = -1.0L / (n + 1);
+    for (int j = 1; j < n; ++j) integral += e[j] / (j + 1);
+    return integral / residual - 0.5L * local_error(c0);
+  }
+
  private:
   using Rows = std::vector<long double>;
   int q, n;
@@ -182,7 +191,6 @@ inline const std::vector<TunedSet> &tuned_sets()
       {SECOND, DRIVEN, {0.518283853L}},
       {SECOND, DRIVEN, {0.612194931L, 0.286697465L}, 0.005707609L},
       {SECOND, DRIVEN, {0.605389137L, 0.296087276L}, 0.002163953L, true},
-      {Formulation::MOMENTUM, DRIVEN, {0.605389137L, 0.296087276L}, 0.003L},
       {SECOND, DRIVEN, {0.68109688L, 0.214659532L, 0.054497661L}},
       {SECOND, DRIVEN, {0.764735219L, 0.414859115L, 0.077867825L, 0.021600975L}, 0.027779193L},
       {SECOND, DRIVEN, {0.767583958L, 0.315047149L, 0.095050269L, 0.010917458L, 0.001670165L}},
@@ -207,17 +215,14 @@ inline const std::vector<TunedSet> &tuned_sets()
   return sets;
 }
 
-/// Formulation momentum has a set of its own for this number of values, otherwise those of second.
-constexpr int OWN_SET_OF_MOMENTA = 5;
-
 /// The tuned set, null if there is none.  any_norm: the set for quaternions of any length, if there
-/// is one.
+/// is one; formulation momentum has this set, too.
 inline const TunedSet *tuned_set(Formulation formulation, int values, Columns columns,
                                  bool any_norm = false)
 {
   const TunedSet *found = nullptr;
-  const bool own = formulation == Formulation::MOMENTUM && values == OWN_SET_OF_MOMENTA;
-  if (!own && formulation == Formulation::MOMENTUM) formulation = Formulation::SECOND;
+  any_norm |= formulation == Formulation::MOMENTUM;
+  if (any_norm) formulation = Formulation::SECOND;
   for (const TunedSet &set : tuned_sets())
     if (set.formulation == formulation && set.values() == values && set.columns == columns &&
         (any_norm || !set.any_norm) && (!found || set.any_norm))
@@ -272,6 +277,7 @@ struct CorrectorCoefficients {
 
   Array driven = {}, integrated = {};    ///< see Columns; second: only driven
   double weight2;                        ///< of the residuals of positions and quaternions, squared
+  double moment = 0.0;                   ///< see SteadyDeviations; of second-order equations
 
   /// Throws std::domain_error if the scheme is tuned and has a number of values without a tuned
   /// set.
@@ -280,6 +286,9 @@ struct CorrectorCoefficients {
     double weight = fill(scheme, Columns::DRIVEN, driven);
     if (scheme.first()) weight = fill(scheme, Columns::INTEGRATED, integrated);
     weight2 = weight * weight;
+    if (scheme.first() || is_verlet(scheme)) return;
+    const std::vector<long double> exact(driven.begin(), driven.begin() + scheme.values());
+    moment = double(SteadyDeviations(2, exact).moment(exact[0]));
   }
 
  private:
