@@ -6,8 +6,8 @@
 /* Choice of the number of values for a simulation.
 
    The fast edge z of a motion is the frequency of its fastest vibrations times the step.  With the
-   accelerations y'' of all bodies, and for rotations the torques along the axes of space, weighted
-   by masses and inverse moments of inertia,
+   accelerations y'' of all bodies, and for rotations I^-1 times the torques along the axes of space,
+   weighted by masses and the mean moments of inertia,
 
      z^4 = sum (|h^4 y''''|^2 + |h^5 y'''''|^2) / sum (|h^2 y''|^2 + |h^3 y'''|^2).
 
@@ -129,6 +129,8 @@ class MotionSums {
   {
     constexpr double FACTORIAL[] = {2.0, 6.0, 24.0, 120.0};
     const double *inertia = body.inertia;
+    const int freedoms = std::max(1, body.rotational_freedoms());
+    const double mean = (inertia[0] + inertia[1] + inertia[2]) / freedoms;
     double axes[9], per_inertia[3], size[LEVELS] = {};    // squares of h^k y^(k)
     rotation_matrix(state.q, dot4(state.q, state.q), axes);
     inverse_moments(body, per_inertia);
@@ -136,7 +138,8 @@ class MotionSums {
       const double *x = derivatives[k].data();
       double along[3], all = body.mass * dot3(x, x);
       to_body(axes, x + 3, along);
-      for (int i = 0; i < 3; ++i) all += per_inertia[i] * along[i] * along[i];
+      for (int i = 0; i < 3; ++i) along[i] *= per_inertia[i];
+      all += mean * dot3(along, along);
       size[k] = FACTORIAL[k] * FACTORIAL[k] * all;
     }
     const double per_h4 = 1.0 / (h * h * h * h);    // in units of y''

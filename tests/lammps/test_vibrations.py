@@ -96,8 +96,8 @@ def test_the_motion_is_not_changed(lmp_wheel):
 @pytest.mark.parametrize(
     "words, dt, what",
     [
-        ("values 7", 0.02, "7 values of formulation second and corrector tuned"),
-        ("corrector gear", 0.018, "8 values of formulation second and corrector gear"),
+        ("values 7", 0.0195, "7 values of formulation second and corrector tuned"),
+        ("corrector gear", 0.017, "8 values of formulation second and corrector gear"),
         ("formulation first", 0.018, "8 values of formulation first and corrector tuned"),
     ],
 )

@@ -169,6 +169,50 @@ TEST(Momentum, OrdersOfOrientationsInTheCage)
   }
 }
 
+// wells that hold the axes of a body at those of space; without the term of kappa the larger
+// amplitude loses energy
+
+TEST(Momentum, LibrationsKeepTheirEnergyAtAnyAmplitude)
+{
+  const RigidBody body = {1.0, {0.6, 1.15, 1.75}};
+  const double depth[3] = {0.884, 0.284, 0.0}, h = 0.5;    // angular frequencies 0.7 to 1.4
+  const auto wells = [&](const BodyState &s, double norm2) {
+    Load load = {};
+    double a[9];
+    rotation_matrix(s.q, norm2, a);
+    for (int i = 0; i < 3; ++i) {
+      double pull[3] = {}, torque[3];
+      pull[i] = depth[i];
+      cross3(a + 3 * i, pull, torque);
+      for (int k = 0; k < 3; ++k) load.torque_space[k] += torque[k];
+    }
+    return load;
+  };
+  const auto energy = [&](const BodyState &s) {
+    double a[9];
+    rotation_matrix(s.q, dot4(s.q, s.q), a);
+    return rotational_energy(body, s.omega_body) - depth[0] * a[0] - depth[1] * a[4];
+  };
+  for (const double amplitude : {0.01, 0.2}) {
+    BodyState start = {};
+    start.q[3] = 1.0;
+    for (int i = 0; i < 3; ++i) start.omega_body[i] = amplitude * (i == 1 ? -1.0 : 0.8);
+    Motion motion(body, start, wells, momentum(5), h, Start::BOOTSTRAP, 0.3);
+    const auto mean = [&] {
+      double sum = 0.0;
+      for (int step = 0; step < 400; ++step) {
+        motion.step();
+        sum += energy(motion.state()) / 400;
+      }
+      return sum;
+    };
+    const double before = mean();
+    motion.steps(3000);
+    const double change = (mean() - before) / rotational_energy(body, start.omega_body);
+    EXPECT_LT(std::fabs(change), 1.0e-3) << amplitude;
+  }
+}
+
 TEST(Momentum, ARodTurnsAboutItsTwoAxes)
 {
   const RigidBody rod = {2.0, {1.5, 1.5, 0.0}};
