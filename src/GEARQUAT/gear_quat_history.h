@@ -134,30 +134,30 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   /// Advance the history by one step: the Taylor series (Eq. 11) as additions of Pascal's triangle.
   /// After the call row j holds h^j/j! times the j-th derivative of the same polynomial at t + h.
   /// n: 3 to 12, for all formulations.  COUNT: components from the first on; the others do not
-  /// change.  LOWEST: the first row that changes.
-  template <int COUNT = WIDTH, int LOWEST = 0> static void predict(double *rows, int n)
+  /// change.
+  template <int COUNT = WIDTH> static void predict(double *rows, int n)
   {
     switch (n) {    // a number of rows known at compile time, so that a column stays in registers
       case 3:
-        return pascal<3, COUNT, LOWEST>(rows);
+        return pascal<3, COUNT>(rows);
       case 4:
-        return pascal<4, COUNT, LOWEST>(rows);
+        return pascal<4, COUNT>(rows);
       case 5:
-        return pascal<5, COUNT, LOWEST>(rows);
+        return pascal<5, COUNT>(rows);
       case 6:
-        return pascal<6, COUNT, LOWEST>(rows);
+        return pascal<6, COUNT>(rows);
       case 7:
-        return pascal<7, COUNT, LOWEST>(rows);
+        return pascal<7, COUNT>(rows);
       case 8:
-        return pascal<8, COUNT, LOWEST>(rows);
+        return pascal<8, COUNT>(rows);
       case 9:
-        return pascal<9, COUNT, LOWEST>(rows);
+        return pascal<9, COUNT>(rows);
       case 10:
-        return pascal<10, COUNT, LOWEST>(rows);
+        return pascal<10, COUNT>(rows);
       case 11:
-        return pascal<11, COUNT, LOWEST>(rows);
+        return pascal<11, COUNT>(rows);
       case 12:
-        return pascal<12, COUNT, LOWEST>(rows);
+        return pascal<12, COUNT>(rows);
     }
   }
 
@@ -212,7 +212,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   }
 
   // unrolled by name: LAMMPS is mostly built with -O2, which does not unroll loops
-  template <int N, int COUNT, int LOWEST> static void pascal(double *rows)
+  template <int N, int COUNT> static void pascal(double *rows)
   {
     for (int c = 0; c < COUNT; ++c) {
       double y[N], carry[CARRIES + 1];
@@ -223,7 +223,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
 #pragma GCC unroll 12
       for (int pass = 0; pass < N - 1; ++pass)
 #pragma GCC unroll 12
-        for (int j = N - 2; j >= (pass > LOWEST ? pass : LOWEST); --j)
+        for (int j = N - 2; j >= pass; --j)
           if (j < CARRIES)
             add_exactly(y[j], carry[j], y[j + 1]);
           else
