@@ -77,7 +77,7 @@ struct Scheme {
   /// bodies unstable earlier.
   int coupled_passes() const
   {
-    const bool converging = momentum() || (any_norm() && values() < 9);
+    const bool converging = (momentum() || any_norm()) && values() < 9;
     return passes == 0 && converging ? CONVERGING_PASSES : fixed_passes();
   }
   static constexpr int AUTOMATIC_PASSES = 2, CONVERGING_PASSES = 3;
