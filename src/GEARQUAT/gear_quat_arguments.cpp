@@ -105,13 +105,14 @@ void Arguments::parse_keywords(int narg, char **arg)
   }
   if (is_on("preset", "paper")) take_preset();
   for (const auto &row : keyword_table())
-    if (row.kind == Keyword::WORD && !given.count(row.name))
-      row.store(*this, {row.standard_word(is_on("tolerance", ""))});
+    if (row.kind == Keyword::WORD && !given.count(row.name)) row.store(*this, {standard_word(row)});
   check_conditions();
-  if (scheme.momentum() && scheme.projection == Projection::NO)
-    error->all(FLERR,
-               "Fix gear/quat project: formulation momentum keeps the length of quaternions "
-               "always; leave out project no");
+  for (const char *keyword : {"passes", "project"})
+    if (scheme.momentum() && given.count(keyword))
+      error->all(FLERR,
+                 "Fix gear/quat keyword {} requires formulation second or first: formulation "
+                 "momentum neither repeats corrections nor projects quaternions",
+                 keyword);
   check_ranges();
   if (is_on("tolerance", "")) check_control();
   check_pressure();
@@ -125,9 +126,13 @@ void Arguments::take_preset()
 {
   using Words = std::vector<std::pair<std::string, std::string>>;
   const bool first = is_on("formulation", "first");
-  if (is_on("formulation", "momentum"))
+  if (given.count("formulation") && is_on("formulation", "momentum"))
     error->all(FLERR, "Fix gear/quat preset paper: the paper has formulations first and second");
-  Words words = {{"corrector", "gear"}, {"passes", "1"}, {"start", "zero"}, {"project", "no"}};
+  Words words = {{"formulation", "second"},
+                 {"corrector", "gear"},
+                 {"passes", "1"},
+                 {"start", "zero"},
+                 {"project", "no"}};
   if (first)
     words.insert(words.end(), {{"values", "5"}, {"momentum", "predicted"}});
   else
@@ -153,10 +158,17 @@ bool Arguments::is_on(const std::string &keyword, const std::string &value) cons
   const auto place = given.find(keyword);
   if (keyword == "bodystyle") return place->second.text == value;
   const Keyword &row = find_keyword(lmp, keyword);
-  const std::string &present = place == given.end() ? row.standard_word(given.count("tolerance"))
-                                                    : place->second.text;
+  const std::string &present = place == given.end() ? standard_word(row) : place->second.text;
   if (!value.empty()) return present == value;
   return !present.empty() && !(row.kind == Keyword::WORD && present == "none");
+}
+
+/// The default of a WORD in this command.
+const std::string &Arguments::standard_word(const Keyword &row) const
+{
+  for (const auto &other : row.standards)
+    if (is_on(other.keyword, other.value)) return other.word;
+  return row.standard;
 }
 
 /// Checks requirements and conflicts between keywords.
@@ -202,7 +214,7 @@ void Arguments::check_ranges()
     const bool is_stated = given.count(row.name) && !given.at(row.name).is("auto");
     if (is_stated) value = given.at(row.name);
     row.store(*this, value);
-    if (row.of_tables) automatic_values = !is_stated && !tolerance;
+    if (row.may_be_auto) automatic_values = !is_stated && !tolerance;
     if (row.may_be_auto && !is_stated) continue;
     if (value.integer < range.fewest || value.integer > range.most)
       error->all(FLERR, "Fix gear/quat {}: {} is not from {} to {}{}", row.name, value.text,
@@ -215,13 +227,6 @@ void Arguments::check_ranges()
                  "Fix gear/quat tolerance: {} {} are more than {}, the largest number for which "
                  "the step may become shorter",
                  value.integer, row.name, row.most_with_tolerance);
-    if (row.of_tables && scheme.tuned && !has_tuned(scheme.formulation, value.integer))
-      error->all(
-          FLERR,
-          "Fix gear/quat {}: formulation {} has no tuned coefficients for {} but for {}; use "
-          "one of these numbers, or add corrector gear",
-          row.name, word_of(scheme.formulation), value.integer,
-          tuned_numbers(scheme.first(), ", "));
   }
 }
 

@@ -94,8 +94,13 @@ struct Keyword {
   /// Another keyword that is required or excluded; an empty value means any value except "none".
   struct Condition {
     std::string keyword, value;
-    std::string reason;      ///< ends the error message, may be empty
-    std::string only_for;    ///< required only by this value of the keyword; empty: by any value
+    std::string reason;    ///< ends the error message, may be empty
+    std::string only_for =
+        "";    ///< required only by this value of the keyword; empty: by any value
+  };
+  /// The default of a WORD beside this value of another keyword; an empty value means any.
+  struct Standard {
+    std::string keyword, value, word;
   };
   using Store = void (*)(Arguments &, const KeywordValue &);
 
@@ -105,15 +110,14 @@ struct Keyword {
   Store store;
 
   Kind kind = WORD;
-  std::vector<std::string> words;    ///< WORD: the possible ones; NUMBER: the words after it, the
-                                     ///< first is the default; NAME, MASK, NUMBERS: what follows
-  std::string standard;              ///< WORD: the default
-  std::string with_tolerance;        ///< WORD: the default then, empty: the same
-  std::vector<Range> ranges;         ///< INTEGER: one, or one per formulation, second first
-  int any_sign = 0;                  ///< NUMBERS: how many of the first may be negative or zero
-  int most_with_tolerance = 0;       ///< INTEGER: also the default then, within the range
-  bool of_tables = false;            ///< INTEGER: corrector tuned has coefficients for some of them
-  bool may_be_auto = false;          ///< INTEGER: the word auto is possible, and the default
+  std::vector<std::string> words;     ///< WORD: the possible ones; NUMBER: the words after it, the
+                                      ///< first is the default; NAME, MASK, NUMBERS: what follows
+  std::string standard;               ///< WORD: the default
+  std::vector<Standard> standards;    ///< WORD: other defaults, the first that applies counts
+  std::vector<Range> ranges;          ///< INTEGER: one, or two, the second for formulation first
+  int any_sign = 0;                   ///< NUMBERS: how many of the first may be negative or zero
+  int most_with_tolerance = 0;        ///< INTEGER: also the default then, within the range
+  bool may_be_auto = false;           ///< INTEGER: the word auto is possible, and the default
   std::vector<Condition> needs, excludes;
 
   Keyword(const char *name, const char *about, const char *meaning, Store store) :
@@ -134,14 +138,9 @@ struct Keyword {
     most_with_tolerance = at_most_with_tolerance;
     return follows(INTEGER, {});
   }
-  Keyword &standard_with_tolerance(const std::string &word)
+  Keyword &standard_with(const char *keyword, const char *value, const char *word)
   {
-    with_tolerance = word;
-    return *this;
-  }
-  Keyword &with_tables()
-  {
-    of_tables = true;
+    standards.push_back({keyword, value, word});
     return *this;
   }
   Keyword &or_auto()
@@ -178,12 +177,6 @@ struct Keyword {
   /// The range for a formulation, if there are two ranges.
   const Range &range(bool first) const { return ranges[first ? ranges.size() - 1 : 0]; }
 
-  /// The default of a WORD.
-  const std::string &standard_word(bool tolerance) const
-  {
-    return tolerance && !with_tolerance.empty() ? with_tolerance : standard;
-  }
-
   /// The default of an INTEGER.
   int standard_of(const Range &range, bool tolerance, bool gear) const
   {
@@ -207,9 +200,6 @@ const std::vector<Keyword> &keyword_table();
 /// equivalent of a keyword of the rigid fixes, otherwise the words allowed after the previous
 /// keyword, `before`.
 const Keyword &find_keyword(LAMMPS *lmp, const std::string &name, const Keyword *before = nullptr);
-
-/// The numbers of values of a formulation with tuned coefficients, as a list for a message.
-std::string tuned_numbers(bool first, const std::string &between);
 
 /// Returns true if `text` is an integer, and stores its value in `integer`.
 bool read_integer(const std::string &text, int &integer);
@@ -280,6 +270,7 @@ struct Arguments : protected Pointers {
   void parse_keywords(int narg, char **arg);
   void take_preset();
   bool is_on(const std::string &keyword, const std::string &value) const;
+  const std::string &standard_word(const Keyword &row) const;
   void check_conditions() const;
   void check_ranges();
   void check_control();

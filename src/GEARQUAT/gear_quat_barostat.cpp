@@ -39,7 +39,7 @@ void Barostat::set_heat(const Scheme &scheme)
   Scheme of_heat;
   of_heat.formulation = Formulation::FIRST;
   of_heat.rows = values_of_heat = std::min(CellHistory::scheme_of(scheme).values(), FIRST_MOST);
-  heat_coefficients = CorrectorCoefficients(of_heat).driven;
+  heat_coefficients = CorrectorCoefficients(of_heat).c;
 }
 
 Barostat::Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sites,

@@ -305,12 +305,12 @@ Cause Blowup::first_cause(int ibody, const BodyState &s, double h) const
     return {fmt::format("The motion of the bodies became unstable first: {} other bodies on this "
                         "rank also have errors above {:g} % of their motion in the last step",
                         others, 100.0 * INACCURATE),
-            remedy_for_motion(ibody, h)};
+            shorter_step(h)};
   if (is_pushed(ibody, h))
     return {"The forces became unstable first: they alone move this body by more than its size, or "
             "turn it by more than a radian, in one step",
             apart + shorter_step(h)};
-  return {"The motion of this body became unstable first", remedy_for_motion(ibody, h)};
+  return {"The motion of this body became unstable first", shorter_step(h)};
 }
 
 /// The number of other bodies whose error is a large part of their motion in the last step.
@@ -339,16 +339,6 @@ bool Blowup::is_pushed(int ibody, double h) const
       !(turn <= 1.0);
 }
 
-/// The keyword that makes rotations unstable, otherwise a step.
-std::string Blowup::remedy_for_motion(int ibody, double h) const
-{
-  if (bodies.rigid_of(ibody).rotational_freedoms() == 0 || !is_unstable_with_single_pass(scheme))
-    return shorter_step(h);
-  return fmt::format("Leave out keyword passes, or use passes 2: with passes 1 and {} tuned values "
-                     "rotations can become unstable",
-                     scheme.values());
-}
-
 std::string Blowup::shorter_step(double h) const
 {
   const double size = std::fabs(h);
@@ -374,7 +364,7 @@ std::string Blowup::what_happened(int ibody, const BodyState &s, double h) const
     return fmt::format("moves by {:g} and turns by {:g} radians in one step, {}",
                        length(s.velocity) * std::fabs(h), length(s.omega_body) * std::fabs(h),
                        under);
-  if (scheme.any_norm()) return "turns faster than a step can follow, " + under;
+  if (scheme.momentum()) return "turns faster than a step can follow, " + under;
   return fmt::format("has a quaternion of squared length {:g} instead of 1, {}", dot4(s.q, s.q),
                      under);
 }

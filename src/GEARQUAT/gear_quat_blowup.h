@@ -86,7 +86,6 @@ class Blowup : protected Pointers {
   Cause first_cause(int ibody, const BodyState &s, double h) const;
   int inaccurate_bodies(int ibody, double h) const;
   bool is_pushed(int ibody, double h) const;
-  std::string remedy_for_motion(int ibody, double h) const;
   std::string shorter_step(double h) const;
   std::string where(int ibody, int bad, const Meeting &met) const;
   std::string agree(const std::string &text, int ibody, int bad, const Meeting &met) const;

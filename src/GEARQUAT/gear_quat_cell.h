@@ -171,8 +171,8 @@ class CellHistory {
 
   explicit CellHistory(const Scheme &of_bodies) { set_scheme(of_bodies); }
 
-  /// In formulation first it has Gear's coefficients.  With a changing step the numbers of values
-  /// of bodies change, too, but the number of this history is fixed.
+  /// With a changing step the numbers of values of bodies change, too, but the number of this
+  /// history is fixed.
   static constexpr int VALUES_OF_CHANGING_STEP = 6;
   static Scheme scheme_of(const Scheme &bodies)
   {
@@ -180,9 +180,8 @@ class CellHistory {
     if (scheme.trial) scheme.rows = std::min(scheme.values(), VALUES_OF_CHANGING_STEP);
     if (scheme.first()) {
       scheme.rows = std::max(scheme.values(), SECOND_FEWEST);
-      scheme.tuned = false;
+      scheme.formulation = Formulation::SECOND;
     }
-    scheme.formulation = Formulation::SECOND;
     return scheme;
   }
   void set_scheme(const Scheme &of_bodies)
@@ -190,7 +189,7 @@ class CellHistory {
     const Scheme scheme = scheme_of(of_bodies);
     const CorrectorCoefficients all(scheme);
     n = scheme.values();
-    c = all.driven;
+    c = all.c;
     weight = std::sqrt(all.weight2);
   }
 

@@ -199,7 +199,6 @@ struct ChoiceOfValues {
     if (permits(choice.scheme)) return choice;
     choice.reason = suits_noise(choice.scheme, noise) ? Reason::FRICTION : Reason::NOISE;
     if (noise == Noise::RANDOM && !scheme.first()) {
-      choice.scheme.tuned = true;
       choice.scheme.rows = VERLET;
       return choice;
     }

@@ -27,60 +27,37 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// FIRST and SECOND: those of the paper.  MOMENTUM: positions as in SECOND, and angular momenta.
-enum class Formulation { FIRST, SECOND, MOMENTUM };
+/// MOMENTUM: positions as in SECOND, and angular momenta.  FIRST and SECOND: those of the paper.
+enum class Formulation { MOMENTUM, SECOND, FIRST };
 
 /// The word of keyword formulation.
 inline const char *word_of(Formulation formulation)
 {
-  constexpr const char *WORDS[] = {"first", "second", "momentum"};
+  constexpr const char *WORDS[] = {"momentum", "second", "first"};
   return WORDS[(int) formulation];
 }
-
-/// Treatment of the length of quaternions.  YES: they are projected after every step.  NO: they are
-/// not projected, and formulas assume |q| = 1 (as in the paper).  AUTO: equations for any length
-/// where the method has them (Scheme::any_norm), otherwise YES.
-enum class Projection { AUTO, YES, NO };
 
 /// Settings common to all bodies of a run.
 struct Scheme {
   Formulation formulation = Formulation::SECOND;
-  int rows = 0;                    ///< values kept; 0: as many as the paper
-  int passes = 1;                  ///< corrections with the same forces; 0: automatic
-  bool tuned = false;              ///< coefficients of gear_quat_tuned.h, otherwise Gear's
-  bool velocity_c0 = false;        ///< second: c_0 for velocity-dependent right sides (the paper's)
-  bool predicted_omega = false;    ///< first: omega that feeds Eq. 5
+  int rows = 0;                ///< values kept; 0: as many as the paper
+  int passes = 1;              ///< first, second: corrections with the same forces
+  bool tuned = false;          ///< momentum: coefficients of gear_quat_tuned.h, otherwise Gear's
+  bool velocity_c0 = false;    ///< second: c_0 for velocity-dependent right sides (the paper's)
+  bool predicted_omega = false;       ///< first: omega that feeds Eq. 5
   bool predicted_momentum = false;    ///< first: momentum that feeds Eq. 13 (the paper's)
-  Projection projection = Projection::YES;
-  bool compensate = false;    ///< compensated sums of the rows that are integrated
-  bool trial = false;         ///< one more row, see gear_quat_step_control.h
+  bool project = true;                ///< first, second: onto |q| = 1 after every step
+  bool compensate = false;            ///< compensated sums of the rows that are integrated
+  bool trial = false;                 ///< one more row, see gear_quat_step_control.h
 
   bool first() const { return formulation == Formulation::FIRST; }
   bool momentum() const { return formulation == Formulation::MOMENTUM; }
   int values() const { return rows ? rows : first() ? FIRST_PAPER : SECOND_PAPER; }
   int width() const { return first() ? FIRST_WIDTH : SECOND_WIDTH; }
-  /// True if quaternions obey equations for any length.  Even numbers of values are excluded
-  /// because their leading error is dissipative, so nothing is gained, and so are Gear's
-  /// coefficients.
-  bool any_norm() const
-  {
-    const int n = values();
-    return projection == Projection::AUTO && formulation == Formulation::SECOND && tuned &&
-        n % 2 == 1 && n < 11;
-  }
-  /// Passes of a body.  If passes is 0, a rotation with any_norm() is corrected until it converges.
-  int fixed_passes() const { return passes ? passes : AUTOMATIC_PASSES; }
-  /// Passes of all bodies together, with a coupling.  A rotation with any_norm() converges in the
-  /// first pass.  The kinetic energy needs three passes to converge: with two, water at long steps
-  /// is heated with five values and cooled with seven.  Faster bodies, which are projected, have as
-  /// many.  With nine values, which are for short steps, a third pass would make some of these
-  /// bodies unstable earlier.
-  int coupled_passes() const
-  {
-    const bool converging = (momentum() || any_norm()) && values() < 9;
-    return passes == 0 && converging ? CONVERGING_PASSES : fixed_passes();
-  }
-  static constexpr int AUTOMATIC_PASSES = 2, CONVERGING_PASSES = 3;
+  /// Passes of all bodies together, with a coupling.  The kinetic energy needs three passes to
+  /// converge: with two, water at long steps is heated with five values and cooled with seven.  Nine
+  /// values are for short steps.
+  int coupled_passes() const { return !momentum() ? passes : values() < 9 ? 3 : 2; }
   int carries() const { return compensate ? (first() ? 1 : 2) : 0; }
   /// Doubles of a history: rows, carries, trial row.
   int size() const { return (values() + carries() + trial) * width(); }
@@ -105,7 +82,7 @@ struct Scheme {
 
   /// The divisor of q for a unit quaternion.  Without projection, the paper's formulas are used as
   /// they are, and a body is rigid only to the accuracy of |q| = 1.
-  double norm2(const double *q) const { return projection != Projection::NO ? dot4(q, q) : 1.0; }
+  double norm2(const double *q) const { return project ? dot4(q, q) : 1.0; }
 };
 
 /// Doubles of the longest history, compensated and with a trial row.
@@ -301,10 +278,7 @@ class Kinematics {
     double omegadot_body[3], qdot[4], now[4], kept[4] = {};
     angular_acceleration(body, state, scheme.norm2(state.q), load, omegadot_body);
     quaternion_rate(rows + quat, state.omega_body, qdot);
-    if (scheme.any_norm())
-      quaternion_acceleration(rows + quat, qdot, state.omega_body, omegadot_body, 0.0, 0.0, now);
-    else
-      quaternion_acceleration(rows + quat, qdot, omegadot_body, now);
+    quaternion_acceleration(rows + quat, qdot, omegadot_body, now);
     if (scheme.first()) {
       double scaled[3], before[4];    // times h, h^2
       for (int i = 0; i < 3; ++i) scaled[i] = h * rates[Scheme::OMEGA + i];

@@ -8,11 +8,6 @@
      predict            evaluate (host)                   correct
      rows -> t + h  ->  sites at body_state(), forces  ->  rows at t + h
 
-   First-order formulation (Evans), 13 components:
-     x' = p/m,  p' = F,  q' = 1/2 W(q) omega,  omega' from Euler's equations
-   Second-order formulation (Rapaport), 7 components:
-     x'' = F/m,  q'' = 1/2 W(q) (omega', -2 q'.q')
-   With Scheme::any_norm() gear_quat_any_norm.h replaces the second equation.
    Momentum formulation, 6 components and the quaternion:
      x'' = F/m,  L' = torque along the axes of space
    The quaternion turns exactly with the predicted L(t) (gear_quat_turn.h), then by a small rotation
@@ -24,6 +19,11 @@
    the step, in proportion to L.  This would not be symmetric in time and damp librations; the term
    with kappa, the `moment` of gear_quat_tuned.h, cancels it.
 
+   First-order formulation (Evans), 13 components:
+     x' = p/m,  p' = F,  q' = 1/2 W(q) omega,  omega' from Euler's equations
+   Second-order formulation (Rapaport), 7 components:
+     x'' = F/m,  q'' = 1/2 W(q) (omega', -2 q'.q')
+
    Equation numbers: Pratt & Bin Mohamad Zaini.  Once per step the host calls predict(),
    body_state(), [forces] and correct(), or for a body without moments of inertia the functions
    whose names end in center. */
@@ -31,11 +31,12 @@
 #ifndef GEAR_QUAT_INTEGRATOR_H
 #define GEAR_QUAT_INTEGRATOR_H
 
-#include "gear_quat_any_norm.h"
 #include "gear_quat_gauss.h"
 #include "gear_quat_history.h"
 #include "gear_quat_tuned.h"
 #include "gear_quat_turn.h"
+
+#include <type_traits>
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -57,9 +58,9 @@ class Integrator : public Kinematics {
   }
   /// Uses the given coefficients, as many as in the scheme.
   Integrator(const Scheme &scheme, double h, const CorrectorCoefficients &coefficients) :
-      Kinematics(scheme, h), n(scheme.values()), any_norm(scheme),
+      Kinematics(scheme, h), n(scheme.values()),
       turning(n - 1, std::max(scheme.order(), LEAST_ORDER), std::pow(10.0, -std::min(15, n + 8))),
-      c(coefficients)
+      corrector(coefficients)
   {
   }
 
@@ -102,14 +103,15 @@ class Integrator : public Kinematics {
   Correction correct(const RigidBody &body, const Load &load, const double *axes,
                      double *rows) const
   {
-    if (scheme.momentum())
-      return scheme.compensate ? correct(Momenta<2>(), body, load, axes, rows)
-                               : correct(Momenta<0>(), body, load, axes, rows);
+    if (scheme.momentum()) {
+      Residual total;
+      position_residual(body, load, rows, total.x);
+      momentum_residual(load.torque_space, rows, total.q);
+      return correct_momenta(body, load, axes, total, rows);
+    }
     Pending pending = begin(load, axes, rows);
-    with_history([&](auto history) {
-      correct_all(history, body, load, rows, pending);
-    });
-    return conclude(load, rows, pending);
+    for (int k = scheme.passes; k > 0; --k) correct_pass(body, load, Undamped(), rows, pending);
+    return finish(body, load, rows, pending);
   }
   Correction correct(const RigidBody &body, const Load &load, double *rows) const
   {
@@ -127,7 +129,7 @@ class Integrator : public Kinematics {
   struct Pending {
     double x[3], q[4], torque_body[3];
     Residual total;
-    bool converged;    ///< a pass has iterated the rotation to convergence
+    bool begun;    ///< a pass has been made
   };
 
   Pending begin(const Load &load, const double *axes, const double *rows) const
@@ -137,7 +139,7 @@ class Integrator : public Kinematics {
     copy(rows + scheme.quaternion(), 4, pending.q);
     to_body(axes, load.torque_space, pending.torque_body);
     pending.total = Residual();
-    pending.converged = false;
+    pending.begun = false;
     return pending;
   }
 
@@ -149,6 +151,7 @@ class Integrator : public Kinematics {
     with_history([&](auto history) {
       pass(history, body, load, friction, rows, pending);
     });
+    pending.begun = true;
   }
 
   /// The force in the predicted rows; h times its error is the residual of a momentum.
@@ -175,7 +178,7 @@ class Integrator : public Kinematics {
     } else {
       double q[4], qdot[4];
       velocity_of_pass(rows, pending.total.x, velocity);
-      rotation_of_pass(any_norm.projected_part(rows), rows, pending.total.q, q, qdot);
+      rotation_of_pass(rows, pending.total.q, q, qdot);
       angular_velocity(q, scheme.norm2(q), qdot, omega_body);
     }
   }
@@ -184,12 +187,8 @@ class Integrator : public Kinematics {
   Correction finish(const RigidBody &body, const Load &load, double *rows,
                     const Pending &pending) const
   {
-    if (scheme.momentum()) {
-      const auto axes = axes_of(rows);    // predicted
-      return scheme.compensate
-          ? correct_momenta(Momenta<2>(), body, load, axes.data(), pending.total, rows)
-          : correct_momenta(Momenta<0>(), body, load, axes.data(), pending.total, rows);
-    }
+    if (scheme.momentum())    // axes: predicted
+      return correct_momenta(body, load, axes_of(rows).data(), pending.total, rows);
     with_history([&](auto history) {
       finish_passes(history, rows, pending);
     });
@@ -212,7 +211,7 @@ class Integrator : public Kinematics {
   {
     Nordsieck<1>::predict(rows_of_scalar, n);
     const double residual = h * rate - rows_of_scalar[1];
-    Nordsieck<1>::correct<1>(rows_of_scalar, n, c.driven.data(), 0, &residual);
+    Nordsieck<1>::correct<1>(rows_of_scalar, n, corrector.c.data(), 0, &residual);
   }
 
   /// Torque and moments of inertia are not used.
@@ -224,7 +223,7 @@ class Integrator : public Kinematics {
       correct_center(history, body, load, Undamped(), rows, residual);
     });
     for (int i = 0; i < 3; ++i) dx[i] = rows[i] - x[i];
-    return {dot3(load.force, dx), c.weight2 * dot3(residual, residual), 0.0};
+    return {dot3(load.force, dx), corrector.weight2 * dot3(residual, residual), 0.0};
   }
 
  private:
@@ -283,9 +282,8 @@ class Integrator : public Kinematics {
   static constexpr int LEAST_ORDER = 6;
 
   int n;
-  AnyNorm any_norm;
   Turn turning;
-  CorrectorCoefficients c;
+  CorrectorCoefficients corrector;
 
   /// The residual of a column is target - row, for the row of the order of the equation.
   template <int COUNT, class History>
@@ -315,11 +313,11 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i)
       target[i] =
           h * damper.force(i, load.force[i], before, body.mass) - rates[Scheme::MOMENTUM + i];
-    if (damper.implicit) damper.solve(h * c.driven[0], h * body.mass, target);
-    feed_back<3>(history, c.driven, rows, Scheme::MOMENTUM, target);
+    if (damper.implicit) damper.solve(h * corrector.c[0], h * body.mass, target);
+    feed_back<3>(history, corrector.c, rows, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
-    feed_back<3>(history, c.integrated, rows, rates, Scheme::POSITION, target, residual);
+    feed_back<3>(history, corrector.c, rows, rates, Scheme::POSITION, target, residual);
   }
 
   /// Angular velocities (Eqs. 7, 15) and quaternions (Eqs. 5, 16).
@@ -337,36 +335,26 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i) target[i] = h * target[i] - rates[Scheme::OMEGA + i];
     if (damper.implicit)
       for (int i = 0; i < 3; ++i)
-        if (body.inertia[i] > 0.0) target[i] *= damper.implicit_torque(h * c.driven[0]);
-    feed_back<3>(history, c.driven, rows, Scheme::OMEGA, target);
+        if (body.inertia[i] > 0.0) target[i] *= damper.implicit_torque(h * corrector.c[0]);
+    feed_back<3>(history, corrector.c, rows, Scheme::OMEGA, target);
     quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
     for (int i = 0; i < 4; ++i) target[i] *= h;
-    feed_back<4>(history, c.integrated, rows, rates, quat, target, residual);
-  }
-
-  template <int CARRIES>
-  void correct_all(First<CARRIES> history, const RigidBody &body, const Load &load, double *rows,
-                   Pending &pending) const
-  {
-    Residual &total = pending.total;
-    correct_center(history, body, load, Undamped(), rows, total.x);
-    for (int k = scheme.fixed_passes(); k > 0; --k)
-      correct_rotation(history, body, pending.torque_body, Undamped(), rows, total.q);
-    if (scheme.projection != Projection::NO) project_row(history, rows);
+    feed_back<4>(history, corrector.c, rows, rates, quat, target, residual);
   }
 
   template <int CARRIES, class Damper>
   void pass(First<CARRIES> history, const RigidBody &body, const Load &load, const Damper &friction,
             double *rows, Pending &pending) const
   {
-    correct_center(history, body, load, friction, rows, pending.total.x);
+    if (!std::is_same_v<Damper, Undamped> || !pending.begun)
+      correct_center(history, body, load, friction, rows, pending.total.x);
     correct_rotation(history, body, pending.torque_body, friction, rows, pending.total.q);
   }
 
   template <int CARRIES>
   void finish_passes(First<CARRIES> history, double *rows, const Pending &) const
   {
-    if (scheme.projection != Projection::NO) project_row(history, rows);
+    if (scheme.project) project_row(history, rows);
   }
 
   void add_first(double *rows, int component, const double *change) const
@@ -385,7 +373,7 @@ class Integrator : public Kinematics {
     angular_velocity(pending.q, dot4(pending.q, pending.q), dq, angle_body);
     const Residual &total = pending.total;
     return {dot3(load.force, dx) + dot3(pending.torque_body, angle_body),
-            c.weight2 * dot3(total.x, total.x), c.weight2 * any_norm.turning2(total.q, pending.q)};
+            corrector.weight2 * dot3(total.x, total.x), corrector.weight2 * dot4(total.q, total.q)};
   }
 
   // the momentum formulation
@@ -409,7 +397,7 @@ class Integrator : public Kinematics {
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
       angle_body[i] =
-          c.driven[0] * a[i] + c.moment * (turned[i] - per_inertia[i] * (bent[i] + lever[i]));
+          corrector.c[0] * a[i] + corrector.moment * (turned[i] - per_inertia[i] * (bent[i] + lever[i]));
     return dot3(a, a);
   }
 
@@ -434,33 +422,29 @@ class Integrator : public Kinematics {
   void momentum_of_pass(const double *rows, const double *total, double *momentum) const
   {
     const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM;
-    for (int i = 0; i < 3; ++i) momentum[i] = rates[i] + c.driven[1] * total[i];
-  }
-
-  template <int CARRIES>
-  Correction correct(Momenta<CARRIES> history, const RigidBody &body, const Load &load,
-                     const double *axes, double *rows) const
-  {
-    Residual total;
-    position_residual(body, load, rows, total.x);
-    momentum_residual(load.torque_space, rows, total.q);
-    return correct_momenta(history, body, load, axes, total, rows);
+    for (int i = 0; i < 3; ++i) momentum[i] = rates[i] + corrector.c[1] * total[i];
   }
 
   /// Corrects the rows with these residuals.  axes: predicted.
+  Correction correct_momenta(const RigidBody &body, const Load &load, const double *axes,
+                             const Residual &total, double *rows) const
+  {
+    return scheme.compensate ? correct_momenta(Momenta<2>(), body, load, axes, total, rows)
+                             : correct_momenta(Momenta<0>(), body, load, axes, total, rows);
+  }
   template <int CARRIES>
   Correction correct_momenta(Momenta<CARRIES> history, const RigidBody &body, const Load &load,
                              const double *axes, const Residual &total, double *rows) const
   {
     double angle[3], change[4], torque_body[3];
     const double error2 = small_rotation(body, axes, rows, total.q, angle);
-    history.template correct<3>(rows, n, c.driven.data(), Scheme::POSITION, total.x);
-    history.template correct<3, 1>(rows, n, c.driven.data(), Scheme::ANGULAR_MOMENTUM, total.q);
+    history.template correct<3>(rows, n, corrector.c.data(), Scheme::POSITION, total.x);
+    history.template correct<3, 1>(rows, n, corrector.c.data(), Scheme::ANGULAR_MOMENTUM, total.q);
     small_turn(rows + Scheme::SECOND_QUATERNION, angle, change);
     history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
     to_body(axes, load.torque_space, torque_body);
-    return {c.driven[0] * dot3(load.force, total.x) + dot3(torque_body, angle),
-            c.weight2 * dot3(total.x, total.x), 0.25 * c.weight2 * error2};
+    return {corrector.c[0] * dot3(load.force, total.x) + dot3(torque_body, angle),
+            corrector.weight2 * dot3(total.x, total.x), 0.25 * corrector.weight2 * error2};
   }
 
   template <int CARRIES, class Damper>
@@ -478,7 +462,7 @@ class Integrator : public Kinematics {
       damped[i] = friction.torque(load.torque_space[i], per_h * momentum[i]);
     momentum_residual(damped, rows, pending.total.q);
     if (!friction.implicit) return;
-    const double part = friction.implicit_torque(0.5 * h * c.driven[1]);
+    const double part = friction.implicit_torque(0.5 * h * corrector.c[1]);
     for (int i = 0; i < 3; ++i) pending.total.q[i] *= part;
   }
 
@@ -497,75 +481,40 @@ class Integrator : public Kinematics {
                       double *rows, double *residual) const
   {
     position_residual(body, load, rows, residual);
-    history.template correct<3>(rows, n, c.driven.data(), Scheme::POSITION, residual);
+    history.template correct<3>(rows, n, corrector.c.data(), Scheme::POSITION, residual);
   }
 
-  template <int CARRIES>
-  void correct_all(Second<CARRIES> history, const RigidBody &body, const Load &load, double *rows,
-                   Pending &pending) const
-  {
-    constexpr int WIDTH = Scheme::SECOND_WIDTH, QUATERNION = Scheme::SECOND_QUATERNION;
-    double residual[WIDTH] = {}, per_inertia[3], *total = residual + QUATERNION;
-    inverse_moments(body, per_inertia);
-    position_residual(body, load, rows, residual + Scheme::POSITION);
-
-    // quaternions (Eqs. 6, 7, 18): with c_2 = 1 the residuals of all passes add up to target -
-    // prediction, so the history is corrected once
-
-    const double part = any_norm.projected_part(rows);
-    const auto pass = [&] {
-      rotation_residual(body, per_inertia, pending.torque_body, Undamped(), part, rows, total);
-    };
-    if (any_norm.converges(part))
-      AnyNorm::repeat(part, total, pass);
-    else
-      for (int k = scheme.fixed_passes(); k > 0; --k) pass();
-    history.template correct<WIDTH>(rows, n, c.driven.data(), 0, residual);
-    copy(residual + Scheme::POSITION, 3, pending.total.x);
-    copy(total, 4, pending.total.q);
-    project(history, part, rows);
-  }
-
-  /// The residual of the quaternion after another pass.  total: earlier; part: projected_part().
+  /// The residual of the quaternion after another pass (Eqs. 6, 7, 18).  total: earlier.  With c_2
+  /// = 1 the residuals of all passes add up to target - prediction, so the history is corrected
+  /// once.
   template <class Damper>
-  void rotation_residual(const RigidBody &body, const double *per_inertia,
-                         const double *torque_body, const Damper &damper, double part,
+  void rotation_residual(const RigidBody &body, const double *torque_body, const Damper &damper,
                          const double *rows, double *total) const
   {
     const double *seconds = rows + 2 * Scheme::SECOND_WIDTH + Scheme::SECOND_QUATERNION;
     const double half_h2 = 0.5 * h * h;
     double omega_body[3], torque[3], omegadot_body[3], q[4], qdot[4], target[4];
-    rotation_of_pass(part, rows, total, q, qdot);
+    rotation_of_pass(rows, total, q, qdot);
     angular_velocity(q, scheme.norm2(q), qdot, omega_body);
-#pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
       torque[i] = damper.torque(torque_body[i], body.inertia[i] * omega_body[i]);
-    angular_acceleration(body, per_inertia, torque, omega_body, omegadot_body);
-    if (part < 1.0)
-      quaternion_acceleration(q, qdot, omega_body, omegadot_body,
-                              AnyNorm::STIFFNESS * per_h * per_h, part, target);
-    else
-      quaternion_acceleration(q, qdot, omegadot_body, target);
-#pragma GCC unroll 4
+    angular_acceleration(body, torque, omega_body, omegadot_body);
+    quaternion_acceleration(q, qdot, omegadot_body, target);
     for (int i = 0; i < 4; ++i) total[i] = half_h2 * target[i] - seconds[i];
   }
 
-  /// Without projection the pose is the predicted one, at which the torque was evaluated.
-  void rotation_of_pass(double part, const double *rows, const double *total, double *q,
-                        double *qdot) const
+  void rotation_of_pass(const double *rows, const double *total, double *q, double *qdot) const
   {
     const double *place = rows + Scheme::SECOND_QUATERNION, *rates = place + Scheme::SECOND_WIDTH;
-    const double c0 = part * c.driven[0];
-#pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) {
-      q[i] = place[i] + c0 * total[i];
-      qdot[i] = (rates[i] + c.driven[1] * total[i]) * per_h;
+      q[i] = place[i] + corrector.c[0] * total[i];
+      qdot[i] = (rates[i] + corrector.c[1] * total[i]) * per_h;
     }
   }
   void velocity_of_pass(const double *rows, const double *total, double *velocity) const
   {
     const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::POSITION;
-    for (int i = 0; i < 3; ++i) velocity[i] = (rates[i] + c.driven[1] * total[i]) * per_h;
+    for (int i = 0; i < 3; ++i) velocity[i] = (rates[i] + corrector.c[1] * total[i]) * per_h;
   }
 
   /// The residual of positions with a friction.
@@ -584,7 +533,7 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i)
       damped.force[i] = friction.force(i, load.force[i], momentum, body.mass);
     position_residual(body, damped, rows, total);
-    if (friction.implicit) friction.solve(0.5 * h * c.driven[1], 0.5 * h * h, total);
+    if (friction.implicit) friction.solve(0.5 * h * corrector.c[1], 0.5 * h * h, total);
   }
 
   /// Computes only residuals: rows stay predicted until finish_passes().
@@ -592,26 +541,12 @@ class Integrator : public Kinematics {
   void pass(Second<CARRIES>, const RigidBody &body, const Load &load, const Damper &friction,
             double *rows, Pending &pending) const
   {
-    double per_inertia[3], before[4];
+    double before[4], *total = pending.total.q;
     pass_of_center(body, load, friction, rows, pending.total.x);
-    inverse_moments(body, per_inertia);
-    const double part = any_norm.projected_part(rows);
-    double *total = pending.total.q;
-    const auto turn = [&] {
-      rotation_residual(body, per_inertia, pending.torque_body, friction, part, rows, total);
-    };
-    if (!friction.implicit) {
-      // the friction changes little in later passes, for which one iteration is sufficient
-      if (!pending.converged && any_norm.converges(part))
-        AnyNorm::repeat(part, total, turn);
-      else
-        turn();
-      pending.converged = true;
-      return;
-    }
     copy(total, 4, before);
-    turn();
-    withhold(body, rows, before, 1.0 - friction.implicit_torque(0.5 * h * c.driven[1]), total);
+    rotation_residual(body, pending.torque_body, friction, rows, total);
+    if (friction.implicit)
+      withhold(body, rows, before, 1.0 - friction.implicit_torque(0.5 * h * corrector.c[1]), total);
   }
 
   /// Reduces the change of a residual to account for friction.  The radial part, which conserves
@@ -634,24 +569,16 @@ class Integrator : public Kinematics {
     double residual[Scheme::SECOND_WIDTH];
     copy(pending.total.x, 3, residual + Scheme::POSITION);
     copy(pending.total.q, 4, residual + Scheme::SECOND_QUATERNION);
-    const double part = any_norm.projected_part(rows);
-    history.template correct<Scheme::SECOND_WIDTH>(rows, n, c.driven.data(), 0, residual);
-    project(history, part, rows);
+    history.template correct<Scheme::SECOND_WIDTH>(rows, n, corrector.c.data(), 0, residual);
+    if (scheme.project) project(history, rows);
   }
 
   /// A rescaled q with a nonzero radial rate would damp the rotation, so the rate is projected too
-  /// (Eq. 4).  part: see AnyNorm::projected_part().
-  template <int CARRIES> void project(Second<CARRIES> history, double part, double *rows) const
+  /// (Eq. 4).
+  template <int CARRIES> void project(Second<CARRIES> history, double *rows) const
   {
-    if (scheme.projection == Projection::NO || part == 0.0) return;
     const double *q = rows + Scheme::SECOND_QUATERNION, *rates = q + Scheme::SECOND_WIDTH;
-    double change[4], of_q[4];
-    if (part < 1.0) {
-      AnyNorm::projection(part, q, rates, of_q, change);
-      history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, of_q);
-      history.template add<4>(rows, n, 1, Scheme::SECOND_QUATERNION, change);
-      return;
-    }
+    double change[4];
     project_row(history, rows);
     const double radial = -dot4(q, rates);
     for (int i = 0; i < 4; ++i) change[i] = radial * q[i];

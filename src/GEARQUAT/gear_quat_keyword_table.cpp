@@ -8,17 +8,11 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// A third pass rarely pays, and with a number of passes that has too many digits the run would seem
-// to hang.
-
-static constexpr int PASSES_MOST = 100;
-
 static constexpr char INTEGRATION[] = "integration", STEP[] = "step", BODIES[] = "bodies",
                       PHYSICS[] = "physics", OUTPUT[] = "output";
 
 static constexpr char HELD[] =
     "it acts on all momenta; define a second fix for bodies whose motion is restricted";
-static constexpr char FOR_CORRECTED[] = "tuned coefficients require the corrected one";
 static constexpr char ONE_TEMPERATURE[] =
     "both keep the kinetic energy of the bodies; leave out one of the two";
 static constexpr char MOVING_BOX[] = "with a moving box it is not possible yet";
@@ -48,19 +42,21 @@ static const std::vector<Keyword> TABLE = {
             a.scheme.formulation = v.is("first") ? Formulation::FIRST
                 : v.is("second")                 ? Formulation::SECOND
                                                  : Formulation::MOMENTUM;
-          }).word({"second", "first", "momentum"}),
+          }).word({"momentum", "second", "first"}),
   Keyword("values", INTEGRATION, "how many values a history keeps of each function",
           [](Arguments &a, const Value &v) { a.scheme.rows = v.integer; })
       .integer({{SECOND_FEWEST, SECOND_MOST, 9, 8}, {FIRST_FEWEST, FIRST_MOST, 8, 6}}, VARIABLE_MOST)
-      .with_tables().or_auto(),
+      .or_auto(),
   Keyword("corrector", INTEGRATION, "which coefficients correct a history",
           [](Arguments &a, const Value &v) { a.scheme.tuned = v.is("tuned"); })
-      .word({"tuned", "gear"}).standard_with_tolerance("gear")
+      .word({"tuned", "gear"}).standard_with("tolerance", "", "gear")
+      .standard_with("formulation", "second", "gear").standard_with("formulation", "first", "gear")
+      .requires_also({"formulation", "momentum", "the others have Gear's coefficients", "tuned"})
       .cannot_go_with({"tolerance", "tuned", "with tuned coefficients, errors from a change of "
                        "the step decay too slowly; leave out corrector, or write corrector gear"}),
   Keyword("passes", INTEGRATION, "how many corrections a step makes with the same forces",
           [](Arguments &a, const Value &v) { a.scheme.passes = v.integer; })
-      .integer({{1, PASSES_MOST, 0}}).or_auto(),
+      .integer({{1, 2, 2}}),
   Keyword("compensate", INTEGRATION, "whether sums are compensated for round-off",
           [](Arguments &a, const Value &v) { a.scheme.compensate = v.is("yes"); })
       .word({"no", "yes"}),
@@ -69,11 +65,8 @@ static const std::vector<Keyword> TABLE = {
             a.start = v.is("zero") ? Arguments::Start::ZERO : Arguments::Start::BOOTSTRAP;
           }).word({"bootstrap", "zero"}),
   Keyword("project", INTEGRATION, "whether quaternions are projected to unit length",
-          [](Arguments &a, const Value &v) {
-            a.scheme.projection = v.is("auto") ? Projection::AUTO
-                : v.is("yes")                  ? Projection::YES
-                                               : Projection::NO;
-          }).word({"auto", "yes", "no"}),
+          [](Arguments &a, const Value &v) { a.scheme.project = v.is("yes"); })
+      .word({"yes", "no"}),
   Keyword("tolerance", STEP, "the largest error of a step, to which the time step is adapted",
           [](Arguments &a, const Value &v) {
             a.control.eps = v.number * v.unit;
@@ -115,8 +108,8 @@ static const std::vector<Keyword> TABLE = {
                 : v.is("separate")       ? Isokinetic::SEPARATE
                                          : Isokinetic::NONE;
           }).word({"none", "total", "separate"})
-      .requires_also({"formulation", "first", "its constraint acts on momenta, which formulation "
-                      "second does not have"}),
+      .requires_also({"formulation", "first", "its constraint is part of equations of the first "
+                      "order"}),
   Keyword("rescale", PHYSICS, "whether momenta are scaled to exactly that energy",
           [](Arguments &a, const Value &v) { a.rescale = v.is("yes"); })
       .word({"yes", "no"}).requires_also({"isokinetic", "", ""}),
@@ -190,16 +183,13 @@ static const std::vector<Keyword> TABLE = {
           [](Arguments &, const Value &) {}).word({"none", "paper"}),
   Keyword("c0", INTEGRATION, "which right-hand sides the first coefficient belongs to",
           [](Arguments &a, const Value &v) { a.scheme.velocity_c0 = v.is("velocity"); })
-      .word({"position", "velocity"}).requires_also({"formulation", "second", ""})
-      .requires_also({"corrector", "gear", "tuned coefficients have a c_0 of their own"}),
+      .word({"position", "velocity"}).requires_also({"formulation", "second", ""}),
   Keyword("omega", INTEGRATION, "which angular velocity corrects the quaternion",
           [](Arguments &a, const Value &v) { a.scheme.predicted_omega = v.is("predicted"); })
-      .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""})
-      .requires_also({"corrector", "gear", FOR_CORRECTED, "predicted"}),
+      .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""}),
   Keyword("momentum", INTEGRATION, "which momentum corrects the position",
           [](Arguments &a, const Value &v) { a.scheme.predicted_momentum = v.is("predicted"); })
-      .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""})
-      .requires_also({"corrector", "gear", FOR_CORRECTED, "predicted"}),
+      .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""}),
 };
 
 // clang-format on

@@ -92,15 +92,7 @@ const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name, cons
 template <typename Text> static std::string of_formulations(const Keyword &row, Text text)
 {
   if (row.ranges.size() == 1) return text(row.ranges[0]);
-  return text(row.range(false)) + " (second), " + text(row.range(true)) + " (first)";
-}
-
-std::string GearQuat::tuned_numbers(bool first, const std::string &between)
-{
-  std::vector<std::string> numbers;
-  for (const int n : tuned_values(first ? Formulation::FIRST : Formulation::SECOND))
-    numbers.push_back(std::to_string(n));
-  return utils::join_words(numbers, between);
+  return text(row.range(false)) + " (momentum, second), " + text(row.range(true)) + " (first)";
 }
 
 std::string Keyword::required() const
@@ -124,10 +116,6 @@ std::string Keyword::possible_values() const
 {
   std::string text = required();
   if (most_with_tolerance) text += fmt::format(", at most {} (tolerance)", most_with_tolerance);
-  if (of_tables)
-    for (const bool first : {false, true})
-      text +=
-          fmt::format(", {} ({}, tuned)", tuned_numbers(first, " "), first ? "first" : "second");
   return text;
 }
 
@@ -207,9 +195,13 @@ namespace {
 
 std::string default_cell(const Keyword &row)
 {
-  if (row.kind != Keyword::INTEGER)
-    return row.standard +
-        (row.with_tolerance.empty() ? "" : ", with tolerance " + row.with_tolerance);
+  if (row.kind != Keyword::INTEGER) {
+    std::string cell = row.standard;
+    for (const auto &other : row.standards)
+      cell += fmt::format(", with {}{}{} {}", other.keyword, other.value.empty() ? "" : " ",
+                          other.value, other.word);
+    return cell;
+  }
   const auto standard = [&row](bool tolerance, bool gear) {
     return of_formulations(row, [&row, tolerance, gear](const Keyword::Range &range) {
       return std::to_string(row.standard_of(range, tolerance, gear));

@@ -50,15 +50,6 @@ inline BodyState kicked(const RigidBody &body, const BodyState &before, const Lo
   return s;
 }
 
-/// True if rotations can become unstable because the passes are limited to one.  In water at 1 fs
-/// this happens with 7, 9 and 11 tuned values, with and without projection, and with 5 and 7 values
-/// for free tops.  Even numbers are stable.
-inline bool is_unstable_with_single_pass(const Scheme &scheme)
-{
-  return scheme.passes == 1 && scheme.tuned && scheme.formulation == Formulation::SECOND &&
-      scheme.values() % 2 == 1;
-}
-
 constexpr int FLIGHT_STEPS = 100, LONG_FLIGHT_STEPS = 5000;
 
 /// Radians in a step; a slower rotation is stable with all methods.
@@ -103,19 +94,16 @@ inline double fastest_oscillation(const Scheme &scheme)
 {
   constexpr int FEWEST = 3;    // values of the first column
   constexpr double FASTEST[][MAX_VALUES - FEWEST + 1] = {
-      {0.0, 1.40, 0.36, 0.42, 0.62, 0.46, 0.32, 0.24, 0.16, 0.12},     // second formulation, Gear's
+      {2.0, 1.40, 0.36, 0.42, 0.62, 0.46, 0.32, 0.24, 0.16, 0.12},     // Gear's
       {0.0, 0.24, 0.32, 0.44, 0.60, 0.44, 0.32, 0.22, 0.16, 0.12},     // with c0 of velocities
-      {2.00, 1.04, 0.90, 0.54, 0.70, 0.66, 0.60, 0.56, 0.60, 0.50},    // tuned
-      {2.00, 1.04, 0.96, 0.54, 0.70, 0.66, 0.60, 0.56, 0.60, 0.50},    // with any_norm()
-      {1.00, 0.92, 0.28, 0.34, 0.24, 0.12},                            // first formulation, Gear's
+      {1.00, 0.92, 0.28, 0.34, 0.24, 0.12},                            // first formulation
       {0.72, 0.42, 0.22, 0.10, 0.04, 0.02},                            // with predicted momentum
-      {1.48, 0.86, 0.64, 0.60, 0.60, 0.50},                            // tuned
-      {0.86, 0.36, 0.22, 0.26, 0.20, 0.12},                            // with predicted momentum
+      {2.00, 1.04, 0.96, 0.54, 0.70, 0.66, 0.60, 0.56, 0.60, 0.50},    // tuned
   };
-  const bool other = scheme.first() ? scheme.predicted_momentum
-      : scheme.tuned                ? scheme.any_norm() || scheme.momentum()
-                                    : scheme.velocity_c0;
-  return FASTEST[4 * scheme.first() + 2 * scheme.tuned + other][scheme.values() - FEWEST];
+  const int row = scheme.tuned
+      ? 4
+      : 2 * scheme.first() + (scheme.first() ? scheme.predicted_momentum : scheme.velocity_c0);
+  return FASTEST[row][scheme.values() - FEWEST];
 }
 
 /// Two significant digits, rounded down.
@@ -150,7 +138,7 @@ inline double noise_gain(const Scheme &scheme, const CorrectorCoefficients &c)
     const double before = rows[order - 1];
     Nordsieck<1>::predict(rows, n);
     const double residual = (step == 0 ? 1.0 / order : 0.0) - rows[order];
-    Nordsieck<1>::correct<1>(rows, n, c.driven.data(), 0, &residual);
+    Nordsieck<1>::correct<1>(rows, n, c.c.data(), 0, &residual);
     const double change = rows[order - 1] - before;
     gain += change * change;
   }
@@ -237,13 +225,13 @@ class FrictionLimit {
   RowMap map(double friction) const
   {
     RowMap a = {};
-    const double share = friction * (first ? c.driven[0] : 0.5 * c.driven[1]);
+    const double share = friction * (first ? c.c[0] : 0.5 * c.c[1]);
     for (int column = 0; column < n; ++column) {
       double predicted[MAX_VALUES];
       for (int j = 0; j < n; ++j) predicted[j] = j > column ? 0.0 : binomial(column, j);
       const double residual = (-friction * predicted[0] - predicted[1]) / (1.0 + share);
       for (int j = 0; j < n; ++j) {
-        const double feeds = first ? c.driven[j] : 0.5 * (j + 1) * c.driven[j + 1];
+        const double feeds = first ? c.c[j] : 0.5 * (j + 1) * c.c[j + 1];
         a[j][column] = predicted[j] + feeds * residual;
       }
     }

@@ -95,23 +95,6 @@ inline void quaternion_acceleration(const double *q, const double *qdot,
   w_times(q, half, qddot);
 }
 
-/// The same for a q of any length r, with s = q.qdot/r^2 = r'/r:
-///   qddot = 1/2 W(q) (omegadot_body + 2 s omega_body, -1/2 |omega_body|^2 + 2 r''/r),
-///   r''/r = -1/2 stiffness (r^2 - 1), which keeps the length close to 1.  part: of Eq. 6, 0 to 1.
-inline void quaternion_acceleration(const double *q, const double *qdot, const double *omega_body,
-                                    const double *omegadot_body, double stiffness, double part,
-                                    double *qddot)
-{
-  const double norm2 = dot4(q, q), rate2 = dot4(qdot, qdot), other = 1.0 - part;
-  const double grows = other * dot4(q, qdot) / norm2;
-  const double turns = 0.25 * dot3(omega_body, omega_body);
-  const double half[4] = {0.5 * omegadot_body[0] + grows * omega_body[0],
-                          0.5 * omegadot_body[1] + grows * omega_body[1],
-                          0.5 * omegadot_body[2] + grows * omega_body[2],
-                          -other * (turns + 0.5 * stiffness * (norm2 - 1.0)) - part * rate2};
-  w_times(q, half, qddot);
-}
-
 /// omega_body = 2 W(q)^T qdot / norm2, the inverse of Eq. 5.
 /// norm2: |q|^2, or 1 for the paper's formulas as they are.
 inline void angular_velocity(const double *q, double norm2, const double *qdot, double *omega_body)
@@ -284,21 +267,6 @@ inline void inverse_moments(const RigidBody &body, double *per_inertia)
 {
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) per_inertia[i] = body.inertia[i] > 0.0 ? 1.0 / body.inertia[i] : 0.0;
-}
-
-/// Eq. 7 for many torques and angular velocities, without divisions on the critical path.
-inline void angular_acceleration(const RigidBody &body, const double *per_inertia,
-                                 const double *torque_body, const double *omega_body,
-                                 double *omegadot_body)
-{
-  const double *inertia = body.inertia;
-  const auto about = [&](int i, int j, int k) {
-    const double gyroscopic = (inertia[j] - inertia[k]) * omega_body[j] * omega_body[k];
-    return (torque_body[i] + gyroscopic) * per_inertia[i];
-  };
-  omegadot_body[0] = about(0, 1, 2);
-  omegadot_body[1] = about(1, 2, 0);
-  omegadot_body[2] = about(2, 0, 1);
 }
 
 /// The torque along the principal axes, Eq. 10.  norm2: see rotation_matrix().

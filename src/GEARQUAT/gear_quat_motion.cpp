@@ -162,7 +162,6 @@ void Motion::begin_steps(const Fleet &fleet, double **f, double **torque)
     }
   }
   start_together(full, needed);
-  for (const auto &one : fleet.members) one.motion->warn_of_single_pass();
 }
 
 void Motion::start_together(const std::vector<Motion *> &full, const std::vector<bool> &needed)
@@ -294,11 +293,8 @@ bool Motion::has_to_start(double **f)
   return needs;
 }
 
-/// Quaternions start with unit length, for any previous length.
 Starter Motion::starter(bool needed)
 {
-  for (int ibody = 0; ibody < bodies.nmoved() && step.scheme().any_norm(); ++ibody)
-    project_norm(bodies.change_state(ibody).q);
   if (needed && step.coupling) step.coupling->refer_to_box(step.length());
   std::function<Scheme(const MotionSums &)> choose, foresee;
   if (args.automatic_values) {
@@ -367,8 +363,6 @@ Motion::Settings Motion::settings() const
   found.compensate = scheme.compensate;
   found.tolerance = scheme.trial;
   found.tuned = scheme.tuned;
-  found.projection = (int) scheme.projection;
-  found.passes = scheme.passes;
   found.isokinetic = (int) args.isokinetic;
   found.chains = temp.damp > 0.0 ? 1 + temp.separate : 0;
   found.chain_length = temp.length;

@@ -87,14 +87,14 @@ class Motion : protected Pointers {
 
   /// Settings in a restart file: histories continue only if most of them are the same.
   struct Settings {
-    double formulation, values, compensate, tolerance, tuned, projection, passes;
+    double formulation, values, compensate, tolerance, tuned;
     double isokinetic, chains, chain_length, box, box_chain;
     bool states_corrector, started;
 
     template <class V> void fields(V &v)
     {
-      v(formulation, values, compensate, tolerance, tuned, projection, passes, isokinetic, chains,
-        chain_length, box, box_chain, states_corrector, started);
+      v(formulation, values, compensate, tolerance, tuned, isokinetic, chains, chain_length, box,
+        box_chain, states_corrector, started);
     }
   };
   Settings of_file = {};
@@ -111,13 +111,12 @@ class Motion : protected Pointers {
   Vibrations vibrations;
   double advised_step = HUGE_VAL;          ///< by the last warning about vibrations
   std::optional<ChoiceOfValues> chosen;    ///< input to the choice of a start that has not ended
-  bool warned_pass = false, warned_values = false;
+  bool warned_values = false;
   Scheme foresee_scheme(const MotionSums &here) const;
   Scheme choose_scheme(const MotionSums &here);
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
   void warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins);
   void warn_of_values(const ChoiceOfValues &scene);
-  void warn_of_single_pass();
   const char *another_scheme_suits();
   std::string words_of_scheme() const;
   /// True unless start zero is given: a start determines as many derivatives as it can.

@@ -80,8 +80,7 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
   else if (choice.reason == Reason::FRICTION)
     why = "because the thermostat has a strong friction";
   else if (choice.reason == Reason::FORMULATION)
-    why = choice.scheme.tuned ? "as always with formulation first"
-                              : "as always with corrector gear";
+    why = "as always with corrector gear";
   else if (std::isfinite(scene.edge))
     why = fmt::format("for vibrations of {:.2g} and rotations of {:.2g} radians in a step",
                       scene.edge, scene.turn);
@@ -153,20 +152,6 @@ void Motion::warn_of_values(const ChoiceOfValues &scene)
                    present, suits.scheme.values());
 }
 
-/// Rank 0 warns once.  Collective.
-void Motion::warn_of_single_pass()
-{
-  const Scheme &scheme = step.scheme();
-  if (warned_pass || !is_unstable_with_single_pass(scheme)) return;
-  if (!over_ranks(MPI_MAX, (int) !bodies.tops.empty(), world)) return;
-  warned_pass = true;
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat {}: with passes 1 and {} tuned values rotations can become "
-                   "unstable; leave out keyword passes, or use passes 2",
-                   fix->id, scheme.values());
-}
-
 /// Returns the reason to start histories again with another number of values, null for none.
 /// Reasons are a change of the step, of a rotation or of forces.  Vibrations are from the last
 /// start.  Collective.
@@ -201,21 +186,12 @@ void Motion::adopt_scheme(Fields &file)
     return;
   if (args.automatic_values) scheme.rows = (int) of_file.values;
   if (scheme.values() != of_file.values) return;
-  const bool verlet = !scheme.first() && scheme.values() == VERLET;
-  if (verlet || !args.states("corrector")) scheme.tuned = of_file.tuned != 0.0;
-  if (scheme.tuned && !verlet && !has_tuned(scheme.formulation, scheme.values())) return;
-  if (!args.states("project")) scheme.projection = (Projection) (int) of_file.projection;
-  if (!args.states("passes")) scheme.passes = (int) of_file.passes;
+  if (!args.states("corrector")) scheme.tuned = of_file.tuned != 0.0;
   step.set_scheme(scheme);
 }
 
 std::string Motion::words_of_scheme() const
 {
   const Scheme &s = step.scheme();
-  const std::string passes = s.passes ? std::to_string(s.passes) : "auto";
-  const char *project = s.projection == Projection::AUTO ? "auto"
-      : s.projection == Projection::YES                  ? "yes"
-                                                         : "no";
-  return fmt::format("values {}, corrector {}, passes {}, project {}", s.values(),
-                     s.tuned ? "tuned" : "gear", passes, project);
+  return fmt::format("values {}, corrector {}", s.values(), s.tuned ? "tuned" : "gear");
 }

@@ -305,11 +305,11 @@ static std::string settings(const Arguments &args)
   const std::string values = args.automatic_values
       ? "values auto"
       : fmt::format("{}{} values", args.control.eps > 0.0 ? "at most " : "", scheme.values());
-  const std::string passes = scheme.passes
-      ? fmt::format("{} pass{}", scheme.passes, scheme.passes == 1 ? "" : "es")
-      : "passes auto";
-  return fmt::format("  formulation {}, {}, {}, corrector {}\n", word_of(scheme.formulation),
-                     values, passes, scheme.tuned ? "tuned" : "gear");
+  const std::string passes = scheme.momentum()
+      ? ""
+      : fmt::format(" {} pass{},", scheme.passes, scheme.passes == 1 ? "" : "es");
+  return fmt::format("  formulation {}, {},{} corrector {}\n", word_of(scheme.formulation), values,
+                     passes, scheme.tuned ? "tuned" : "gear");
 }
 
 /* ---------------------------------------------------------------------- */

@@ -49,7 +49,7 @@ Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Thermo
 void Thermostat::set_scheme(const Scheme &scheme)
 {
   most_friction = FrictionLimit::of(scheme);
-  single_pass = scheme.fixed_passes() == 1;
+  single_pass = scheme.coupled_passes() == 1;
 }
 
 /* ----------------------------------------------------------------------
