@@ -37,13 +37,16 @@ inline Scheme scheme_of(Formulation formulation, int values = 0, int passes = 1,
 {
   Scheme scheme;
   scheme.formulation = formulation;
+  scheme.tuned = scheme.momentum();
   scheme.rows = values;
   scheme.passes = passes;
   scheme.compensate = compensate;
   return scheme;
 }
 
-constexpr Formulation FIRST = Formulation::FIRST, SECOND = Formulation::SECOND;
+constexpr Formulation MOMENTUM = Formulation::MOMENTUM, SECOND = Formulation::SECOND,
+                      FIRST = Formulation::FIRST;
+constexpr Formulation FORMULATIONS[] = {MOMENTUM, SECOND, FIRST};
 
 constexpr int fewest(Formulation f)
 {
@@ -64,6 +67,7 @@ inline std::vector<Scheme> schemes_of(Formulation formulation, int passes = 1,
   return list;
 }
 
+/// Schemes of the paper, with Gear's coefficients.
 inline std::vector<Scheme> every_scheme(int passes = 1, bool compensate = false)
 {
   std::vector<Scheme> list = schemes_of(FIRST, passes, compensate);
@@ -224,8 +228,8 @@ struct Motion {
 namespace LAMMPS_NS::GearQuat {
 inline std::ostream &operator<<(std::ostream &out, const Scheme &scheme)
 {
-  return out << (scheme.first() ? "first" : "second") << (scheme.velocity_c0 ? ", velocity c0" : "")
-             << ", " << scheme.values() << " values, " << scheme.passes << " passes"
+  return out << word_of(scheme.formulation) << (scheme.velocity_c0 ? ", velocity c0" : "") << ", "
+             << scheme.values() << " values, " << scheme.passes << " passes"
              << (scheme.compensate ? ", compensated" : "");
 }
 }    // namespace LAMMPS_NS::GearQuat

@@ -25,11 +25,9 @@ inline vector<double> full(const Upper &u)
   return all;
 }
 
-inline Scheme with(Formulation formulation, int values, bool tuned)
+inline Scheme with(Formulation formulation, int values)
 {
-  Scheme scheme = scheme_of(formulation, values, 2);
-  scheme.tuned = tuned;
-  return scheme;
+  return scheme_of(formulation, values, 2);
 }
 
 /// Forces on centers and torques in space, the virial sum F_a R_b about the fixed point 0, energy.
@@ -318,7 +316,7 @@ struct Host {
     for (size_t b = 0; b < bodies.size(); ++b)
       pending[b] =
           integrator.begin(met.loads[b], integrator.axes_of(rows[b].data()).data(), rows[b].data());
-    for (int pass = 0; pass < scheme.passes; ++pass) correct();
+    for (int pass = 0; pass < scheme.coupled_passes(); ++pass) correct();
     finish();
   }
   void correct()
@@ -359,7 +357,7 @@ struct Host {
       scaled[b] = integrator.body_state(bodies[b], rows[b].data());
     }
     const Scheme of_heat = heat_scheme();
-    heat.advance(CorrectorCoefficients(of_heat).driven.data(), of_heat.values(), h,
+    heat.advance(CorrectorCoefficients(of_heat).c.data(), of_heat.values(), h,
                  law.heat_rate(time(), matrix, rate));
   }
 

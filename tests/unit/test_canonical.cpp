@@ -56,9 +56,7 @@ double in_field(double u, double strength)
 
 Scheme fast_scheme(Formulation formulation)
 {
-  Scheme scheme = scheme_of(formulation, formulation == FIRST ? 6 : 5, 2);
-  scheme.tuned = true;
-  return scheme;
+  return scheme_of(formulation, formulation == MOMENTUM ? 5 : 6, 2);
 }
 
 // --- a rotor about z: potential STIFF/2 angle^2

@@ -10,8 +10,6 @@ using Check::slopes;
 
 namespace {
 
-constexpr Formulation FORMULATIONS[] = {FIRST, SECOND};
-
 // --- springs between sites, and to the fixed point, as in the tests of chains
 
 Met springs(const vector<BodyState> &states, const Upper &)
@@ -234,7 +232,7 @@ vector<double> end_of(const Law &law, int steps = 1000)
       [&](Real t, const Vector &at) {
         return flow(law, t, at);
       },
-      beginning(tied(with(SECOND, 7, true), law, 0.1)), Real(TIME), steps);
+      beginning(tied(with(MOMENTUM, 7), law, 0.1)), Real(TIME), steps);
   vector<double> all;
   for (size_t b = 0; b < 2; ++b) {
     for (int k = 0; k < 3; ++k) all.push_back(y[BODY * b + k]);
@@ -288,7 +286,7 @@ TEST(Cell, AllEquationsConserveTheEnergyAndOthersDoNot)
   for (const Mode mode : {ISO, UNEQUAL, TRICLINIC})
     for (const bool chains : {false, true}) {
       const Law right = law_of(mode, chains);
-      Host host = tied(with(SECOND, 7, true), right, 0.1);
+      Host host = tied(with(MOMENTUM, 7), right, 0.1);
       Vector at = beginning(host);
       Check::Numbers numbers(17);
       for (size_t i = XI0; i < SIZE; ++i) at[i] = 0.3 * numbers.next();
@@ -330,24 +328,21 @@ TEST(Cell, OrdersOfPositionBoxAndEnergyAreThoseOfTheScheme)
       const Law law = law_of(mode, chains);
       const auto exact = end_of(law, 2000);
       for (const Formulation formulation : FORMULATIONS)
-        for (int n = 5; n <= (formulation == FIRST ? 8 : 9); ++n)
-          for (const bool tuned : {false, true}) {
-            // of tuned coefficients only the existing ones
-            if (tuned && n % 2 == (formulation == FIRST)) continue;
-            const Scheme scheme = with(formulation, n, tuned);
-            // longer steps where rounding would dominate, one more halving where signs differ
-            const double wide = n < 7 ? 0.05 : 0.1, narrow = n < 9 ? 0.0125 : 0.025;
-            const Errors first = errors(scheme, law, wide, exact);
-            const Errors last = errors(scheme, law, narrow, exact);
-            const double halvings = std::log2(wide / narrow);
-            // with forces that depend on velocities the order is n - 1
-            EXPECT_GT(std::log2(first.end / last.end) / halvings, n - 1.5)
-                << scheme << mode << chains;
-            EXPECT_GT(std::log2(first.cell / last.cell) / halvings, n - 1.8)
-                << scheme << mode << chains;
-            EXPECT_GT(std::log2(first.energy / last.energy) / halvings, n - 1.65)
-                << scheme << mode << chains;
-          }
+        for (int n = 5; n <= (formulation == FIRST ? 8 : 9); ++n) {
+          const Scheme scheme = with(formulation, n);
+          // longer steps where rounding would dominate, one more halving where signs differ
+          const double wide = n < 7 ? 0.05 : 0.1, narrow = n < 9 ? 0.0125 : 0.025;
+          const Errors first = errors(scheme, law, wide, exact);
+          const Errors last = errors(scheme, law, narrow, exact);
+          const double halvings = std::log2(wide / narrow);
+          // with forces that depend on velocities the order is n - 1
+          EXPECT_GT(std::log2(first.end / last.end) / halvings, n - 1.5)
+              << scheme << mode << chains;
+          EXPECT_GT(std::log2(first.cell / last.cell) / halvings, n - 1.8)
+              << scheme << mode << chains;
+          EXPECT_GT(std::log2(first.energy / last.energy) / halvings, n - 1.65)
+              << scheme << mode << chains;
+        }
     }
 }
 
@@ -356,7 +351,7 @@ TEST(Cell, OtherEquationsHaveNoOrder)
   // 1 % in the mass of the cell, its weights, its freedoms or a target
   for (const Mode mode : {ISO, UNEQUAL, TRICLINIC}) {
     const Law law = law_of(mode, true);
-    const Scheme scheme = with(SECOND, 7, true);
+    const Scheme scheme = with(MOMENTUM, 7);
     for (int which = 0; which < 5; ++which) {
       Law wrong = law;
       if (which == 0) wrong.mass *= 1.01;
@@ -374,7 +369,7 @@ TEST(Cell, OtherEquationsHaveNoOrder)
 
 TEST(Cell, EachPairOfNodesOfAStartGainsTwoOrders)
 {
-  const Scheme scheme = with(SECOND, 9, true);
+  const Scheme scheme = with(MOMENTUM, 9);
   const auto order = [&](const Law &law, const vector<double> &exact, int pairs, bool frozen) {
     const double wide = errors(scheme, law, 0.05, exact, pairs, frozen).end;
     return 0.5 * std::log2(wide / errors(scheme, law, 0.0125, exact, pairs, frozen).end);

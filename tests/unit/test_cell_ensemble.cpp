@@ -151,8 +151,7 @@ Host rotors(const MetIn &met_in, double freedoms, bool conserved, bool flexible,
   law.freedoms = own;
   law.turning = 3.0 * ROTORS;
   law.period = law.box_period = 0.7;
-  Scheme scheme = scheme_of(SECOND, 5, 2);
-  scheme.tuned = true;
+  const Scheme scheme = scheme_of(MOMENTUM, 5);
   Host host{{}, {}, met_in, law, scheme, h};
   Check::Numbers numbers(5);
   for (int b = 0; b < ROTORS; ++b) {

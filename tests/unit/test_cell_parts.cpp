@@ -118,7 +118,7 @@ TEST(CellHistory, FollowsAFlowWithAConstantRate)
   for (const double friction : {0.0, 0.7, 20.0}) {
     vector<double> off;
     for (const double h : {0.02, 0.01}) {
-      CellHistory cell(with(SECOND, 6, false));
+      CellHistory cell(with(SECOND, 6));
       const Upper rate = {{0.5, 0.0, -0.3, 0.0, 0.0, 0.0}};
       const auto exact = [&](double t) {
         // G' = -friction G
@@ -150,7 +150,7 @@ TEST(CellHistory, FollowsAFlowWithAConstantRate)
 
 TEST(CellHistory, ANewStepKeepsTheMotion)
 {
-  CellHistory cell(with(SECOND, 5, true));
+  CellHistory cell(with(MOMENTUM, 5));
   cell.begin(some_rate(), 0.1);
   cell.rescale(0.5);
   EXPECT_LT(Check::largest_difference(full(cell.rate(0.05)), full(some_rate())), 1e-15);

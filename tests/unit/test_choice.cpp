@@ -8,12 +8,10 @@ using Reason = ChoiceOfValues::Reason;
 
 namespace {
 
-Scheme automatic(Formulation formulation, bool is_tuned = true)
+Scheme automatic(Formulation formulation)
 {
-  Scheme scheme = scheme_of(formulation, 0, 0);
-  scheme.tuned = is_tuned;
-  scheme.projection = Projection::AUTO;
-  scheme.rows = formulation == FIRST ? (is_tuned ? 8 : 6) : (is_tuned ? 9 : 8);
+  Scheme scheme = scheme_of(formulation);
+  scheme.rows = formulation == FIRST ? 6 : formulation == SECOND ? 8 : 9;
   return scheme;
 }
 
@@ -138,7 +136,7 @@ TEST(FastEdge, ByLoadsIsOfTheMeanSquareFrequency)
 
 TEST(Choice, SlowMotionHasNineAndFastMotionFive)
 {
-  const Scheme scheme = automatic(SECOND);
+  const Scheme scheme = automatic(MOMENTUM);
   const double edge = ChoiceOfValues::EDGE_OF_NINE, turn = ChoiceOfValues::TURN_OF_NINE;
   EXPECT_EQ(scene(0.99 * edge).choose(scheme).scheme.values(), 9);
   EXPECT_EQ(scene(1.01 * edge).choose(scheme).scheme.values(), 5);
@@ -147,12 +145,11 @@ TEST(Choice, SlowMotionHasNineAndFastMotionFive)
   EXPECT_EQ(scene(0.0, 2.0).choose(automatic(Formulation::MOMENTUM)).scheme.values(), 9);
   EXPECT_EQ(scene(INFINITY).choose(scheme).scheme.values(), 5);
   EXPECT_EQ(scene(0.1).choose(scheme).reason, Reason::MOTION);
-  EXPECT_TRUE(scene(0.5).choose(scheme).scheme.any_norm());
 }
 
 TEST(Choice, APresentNumberStaysWithinABand)
 {
-  const Scheme scheme = automatic(SECOND);
+  const Scheme scheme = automatic(MOMENTUM);
   const double edge = ChoiceOfValues::EDGE_OF_NINE, band = ChoiceOfValues::BAND;
   for (const double part : {0.99 / band, 1.01 / band, 0.99 * band, 1.01 * band}) {
     EXPECT_EQ(scene(part * edge).choose(scheme, 9).scheme.values(), part < band ? 9 : 5);
@@ -163,34 +160,31 @@ TEST(Choice, APresentNumberStaysWithinABand)
 TEST(Choice, OtherMethodsHaveTheirOwnNumber)
 {
   for (const double edge : {0.0, 0.3, 0.9}) {
-    EXPECT_EQ(scene(edge).choose(automatic(FIRST)).scheme.values(), 8);
-    EXPECT_EQ(scene(edge).choose(automatic(FIRST, false)).scheme.values(), 6);
-    EXPECT_EQ(scene(edge).choose(automatic(SECOND, false)).scheme.values(), 8);
+    EXPECT_EQ(scene(edge).choose(automatic(FIRST)).scheme.values(), 6);
+    EXPECT_EQ(scene(edge).choose(automatic(SECOND)).scheme.values(), 8);
     EXPECT_EQ(scene(edge).choose(automatic(FIRST)).reason, Reason::FORMULATION);
   }
 }
 
 TEST(Choice, WithRandomAndDissipativeForcesNothingHeats)
 {
-  for (const Formulation formulation : {FIRST, SECOND})
-    for (const bool is_tuned : {false, true})
-      for (const Noise noise : {Noise::RANDOM, Noise::DISSIPATIVE})
-        for (const double edge : {0.0, 0.5}) {
-          ChoiceOfValues noisy = scene(edge);
-          noisy.noise = noise;
-          const auto choice = noisy.choose(automatic(formulation, is_tuned));
-          EXPECT_TRUE(suits_noise(choice.scheme, noise));
-          EXPECT_EQ(choice.reason, Reason::NOISE);
-          EXPECT_EQ(is_verlet(choice.scheme), noise == Noise::RANDOM && formulation == SECOND);
-          EXPECT_TRUE(is_tuned || is_verlet(choice.scheme) || !choice.scheme.tuned);
-        }
+  for (const Formulation formulation : FORMULATIONS)
+    for (const Noise noise : {Noise::RANDOM, Noise::DISSIPATIVE})
+      for (const double edge : {0.0, 0.5}) {
+        ChoiceOfValues noisy = scene(edge);
+        noisy.noise = noise;
+        const auto choice = noisy.choose(automatic(formulation));
+        EXPECT_TRUE(suits_noise(choice.scheme, noise));
+        EXPECT_EQ(choice.reason, Reason::NOISE);
+        EXPECT_EQ(is_verlet(choice.scheme), noise == Noise::RANDOM && formulation != FIRST);
+      }
   ChoiceOfValues noisy = scene(0.0);
   noisy.noise = Noise::DISSIPATIVE;
-  EXPECT_EQ(noisy.choose(automatic(SECOND)).scheme.values(), 4);
-  EXPECT_FALSE(noisy.choose(automatic(SECOND)).scheme.tuned);
+  EXPECT_EQ(noisy.choose(automatic(MOMENTUM)).scheme.values(), 4);
+  EXPECT_FALSE(noisy.choose(automatic(MOMENTUM)).scheme.tuned);
   // a given corrector is kept in any case
   noisy.may_be_gear = false;
-  EXPECT_TRUE(noisy.choose(automatic(SECOND)).scheme.tuned);
+  EXPECT_TRUE(noisy.choose(automatic(MOMENTUM)).scheme.tuned);
 }
 
 TEST(Choice, FrictionOfAThermostatIsFollowed)
@@ -199,9 +193,9 @@ TEST(Choice, FrictionOfAThermostatIsFollowed)
     for (const double friction : {0.0, 0.1, 0.2, 0.4}) {
       ChoiceOfValues hot = scene(edge);
       hot.friction = friction;
-      const Scheme chosen = hot.choose(automatic(SECOND)).scheme;
+      const Scheme chosen = hot.choose(automatic(MOMENTUM)).scheme;
       EXPECT_LE(friction, FrictionLimit::of(chosen));
-      const Scheme wanted = scene(edge).choose(automatic(SECOND)).scheme;
+      const Scheme wanted = scene(edge).choose(automatic(MOMENTUM)).scheme;
       EXPECT_TRUE(friction > FrictionLimit::of(wanted) || chosen.values() == wanted.values());
     }
 }
@@ -214,29 +208,25 @@ TEST(Choice, LongStepsAreTold)
     long_step.noise = noise;
     return long_step.too_long(automatic(formulation));
   };
-  EXPECT_FALSE(told(0.59, 0.49, true, Noise::NONE, SECOND));
-  EXPECT_TRUE(told(0.61, 0.0, true, Noise::NONE, SECOND));
-  EXPECT_FALSE(told(0.61, 0.0, false, Noise::NONE, SECOND));
-  EXPECT_FALSE(told(0.61, 0.0, true, Noise::RANDOM, SECOND));
-  EXPECT_TRUE(told(0.0, 0.51, false, Noise::RANDOM, SECOND));
-  EXPECT_FALSE(told(0.0, 2.0, false, Noise::NONE, Formulation::MOMENTUM));
-  EXPECT_FALSE(told(0.32, 0.24, true, Noise::NONE, FIRST));
-  EXPECT_TRUE(told(0.34, 0.24, true, Noise::NONE, FIRST));
-  EXPECT_TRUE(told(0.0, 0.26, false, Noise::NONE, FIRST));
+  EXPECT_FALSE(told(0.59, true, Noise::NONE, MOMENTUM));
+  EXPECT_TRUE(told(0.61, true, Noise::NONE, MOMENTUM));
+  EXPECT_FALSE(told(0.61, false, Noise::NONE, MOMENTUM));
+  EXPECT_FALSE(told(0.61, true, Noise::RANDOM, MOMENTUM));
+  EXPECT_FALSE(told(0.22, true, Noise::NONE, FIRST));
+  EXPECT_TRUE(told(0.24, true, Noise::NONE, FIRST));
   ChoiceOfValues both = scene(1.0, 1.0);
   both.exact = true;
-  EXPECT_DOUBLE_EQ(both.advised_part(automatic(SECOND)), 0.4);
-  EXPECT_DOUBLE_EQ(both.advised_part(automatic(FIRST)), 0.2);
+  EXPECT_DOUBLE_EQ(both.advised_part(automatic(MOMENTUM)), 0.4);
   both.turn = 0.1;
-  EXPECT_DOUBLE_EQ(both.advised_part(automatic(SECOND)), 0.5);
-  EXPECT_NEAR(both.advised_part(automatic(FIRST)), 5.0 / 6.0 / 3.0, 1e-12);
+  EXPECT_DOUBLE_EQ(both.advised_part(automatic(MOMENTUM)), 0.5);
+  EXPECT_NEAR(both.advised_part(automatic(FIRST)), 5.0 / 6.0 * 2.0 / 3.0 * 0.34, 1e-12);
 }
 
 TEST(Choice, AStatedNumberHasALimitOfItsOwn)
 {
   // two thirds of the fastest stable vibration
   const auto longest = [](int values, bool is_tuned) {
-    Scheme scheme = automatic(SECOND, is_tuned);
+    Scheme scheme = automatic(is_tuned ? MOMENTUM : SECOND);
     scheme.rows = values;
     ChoiceOfValues stated = scene(0.01, 0.6);
     stated.exact = true;
@@ -271,7 +261,7 @@ TEST(Choice, ConservesTheEnergyOfAVibrationAtBothSidesOfTheEdge)
 {
   // energy lost by a harmonic motion in 20 000 steps, compared with the other number
   const auto drift = [](int values, double z) {
-    Scheme scheme = automatic(SECOND);
+    Scheme scheme = automatic(MOMENTUM);
     scheme.rows = values;
     const double h = z / OMEGA;
     BodyState s = swinging(0.3);
@@ -285,7 +275,7 @@ TEST(Choice, ConservesTheEnergyOfAVibrationAtBothSidesOfTheEdge)
     motion.steps(20000);
     return std::fabs(energy() / before - 1.0);
   };
-  const double low = 0.5 * ChoiceOfValues::EDGE_OF_NINE, high = 2.2 * ChoiceOfValues::EDGE_OF_NINE;
+  const double low = 0.5 * ChoiceOfValues::EDGE_OF_NINE, high = 2.6 * ChoiceOfValues::EDGE_OF_NINE;
   EXPECT_LT(drift(9, low), drift(5, low));
-  EXPECT_LT(drift(5, high), drift(9, high));
+  EXPECT_FALSE(drift(9, high) <= drift(5, high));    // nine values are unstable: not a number
 }

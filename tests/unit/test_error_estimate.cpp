@@ -73,7 +73,7 @@ TEST(ErrorEstimate, IsTheWeightTimesTheResiduals)
   // c = 1 in the row of the equation, so the change of this row is the sum of the residuals
   for (int passes : {1, 3})
     for (Scheme scheme : every_scheme(passes, true)) {
-      scheme.projection = Projection::NO;
+      scheme.project = false;
       Motion motion(TOP, top_state(0.0), swing, scheme, 0.2, Start::BOOTSTRAP, 0.1);
       motion.steps(5);
       motion.predict();

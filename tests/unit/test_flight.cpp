@@ -55,13 +55,10 @@ TEST(Flight, EightValuesFollowAlmostHalfARadian)
 
 TEST(Flight, TheLongestStepIsOneThatIsFollowed)
 {
-  Scheme defaults[] = {scheme_of(SECOND, 9, 2), scheme_of(FIRST, 8, 2)};
-  for (Scheme &scheme : defaults) scheme.tuned = true;
-  for (const Scheme &scheme : {scheme_of(SECOND, 8, 2), defaults[0], defaults[1]})
+  for (const Scheme &scheme : {scheme_of(SECOND, 8, 2), scheme_of(FIRST, 6, 2)})
     for (const double omega : {0.6, 2.7, 100.0}) {
       const BodyState state = spinning(omega);
       const double step = longest_step(scheme, CARBON_DIOXIDE, state, 1.0);
-      // at the limit the instability is slow: tuned, 9 values, 0.45 radians in a step, after 302
       EXPECT_TRUE(survives_flight(scheme, CARBON_DIOXIDE, state, step, 2000)) << scheme << omega;
       EXPECT_EQ(survives_flight(scheme, CARBON_DIOXIDE, state, 1.0), step == 1.0)
           << scheme << omega;

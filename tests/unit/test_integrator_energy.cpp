@@ -115,7 +115,7 @@ TEST(Projection, KeepsBothConstraintsAndItsAbsenceShows)
     Scheme scheme = scheme_of(formulation);
     double worst[2] = {0.0, 0.0}, radial[2] = {0.0, 0.0};
     for (bool project : {false, true}) {
-      scheme.projection = project ? Projection::YES : Projection::NO;
+      scheme.project = project;
       Motion motion = cage_motion(scene, scheme, 0.1);
       for (int n = 0; n < 3000; ++n) {
         motion.step();

@@ -1,12 +1,13 @@
 /* gear_quat_limits.h: motions beyond the limits, and non-finite ones. */
 
 #include "checks.h"
+#include "drive.h"
 #include "gear_quat_limits.h"
 
 #include <limits>
 #include <string>
 
-using namespace LAMMPS_NS::GearQuat;
+using namespace Drive;
 
 namespace {
 
@@ -125,30 +126,19 @@ TEST(Limits, AKickIsWhatALoadMakesOfVelocities)
 TEST(Limits, TheFastestOscillation)
 {
   // the table is what a trial of every method gives; it fails with the row that the table should have
-  for (const Formulation formulation : {Formulation::SECOND, Formulation::FIRST})
-    for (const bool is_tuned : {false, true})
-      for (const bool other : {false, true}) {
-        const bool first = formulation == Formulation::FIRST;
-        std::string row, table;
-        for (int n = first  ? FIRST_FEWEST
-                 : is_tuned ? VERLET
-                            : SECOND_FEWEST;
-             n <= (first ? FIRST_MOST : SECOND_MOST); ++n) {
-          Scheme scheme;
-          scheme.formulation = formulation;
-          scheme.rows = n;
-          scheme.tuned = is_tuned;
-          if (first)
-            scheme.predicted_momentum = other;
-          else if (is_tuned)
-            scheme.projection = other ? Projection::AUTO : Projection::YES;
-          else
-            scheme.velocity_c0 = other;
-          row += " " + std::to_string(on_trial(scheme));
-          table += " " + std::to_string(fastest_oscillation(scheme));
-        }
-        EXPECT_EQ(table, row) << first << is_tuned << other;
+  for (const Formulation formulation : FORMULATIONS)
+    for (const bool other : {false, true}) {
+      std::string row, table;
+      for (int n = formulation == MOMENTUM ? VERLET : fewest(formulation); n <= most(formulation);
+           ++n) {
+        Scheme scheme = scheme_of(formulation, n, formulation == MOMENTUM ? 1 : 2);
+        if (formulation == FIRST) scheme.predicted_momentum = other;
+        if (formulation == SECOND) scheme.velocity_c0 = other;
+        row += " " + std::to_string(on_trial(scheme));
+        table += " " + std::to_string(fastest_oscillation(scheme));
       }
+      EXPECT_EQ(table, row) << word_of(formulation) << other;
+    }
 }
 
 TEST(Limits, RoundedDown)

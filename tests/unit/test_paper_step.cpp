@@ -70,7 +70,7 @@ vector<double> literal_step(const Scheme &scheme, const vector<long double> &tab
   step.passes = scheme.passes;
   step.predicted_omega = scheme.predicted_omega;
   step.predicted_momentum = scheme.predicted_momentum;
-  step.project = scheme.projection == Projection::YES;
+  step.project = scheme.project;
 
   const vector<double> rows = some_history(scheme);
   const int n = scheme.values(), width = scheme.width();
@@ -115,7 +115,7 @@ TEST(PaperStep, EveryChoiceIsAnotherStep)
     vector<vector<double>> results;
     for (int choice = 0; choice < (formulation == FIRST ? 8 : 4); ++choice) {
       Scheme scheme = scheme_of(formulation);
-      scheme.projection = choice & 1 ? Projection::YES : Projection::NO;
+      scheme.project = choice & 1;
       if (formulation == FIRST) {
         scheme.predicted_omega = choice & 2;
         scheme.predicted_momentum = choice & 4;

@@ -30,7 +30,7 @@ Load some_load(const BodyState &s, double norm2)
 /// constant body-frame torque.  Unprojected, since a projection moves q afterwards.
 double missed(const RigidBody &judge, Scheme scheme, int passes, double h)
 {
-  scheme.projection = Projection::NO;
+  scheme.project = false;
   Motion motion(TOP, top_state(0.0), some_load, passing(scheme, passes), h, Start::BOOTSTRAP, h);
   motion.steps(3);
   motion.predict();

@@ -18,42 +18,25 @@ namespace {
 using Coefficients = vector<long double>;
 using Exact = vector<Rational>;
 
-/// Order of the equation that a formulation integrates.
-int order_of(Formulation formulation)
-{
-  return formulation == FIRST ? 1 : 2;
-}
-
-Scheme tuned(Scheme scheme)
-{
-  scheme.tuned = true;
-  return scheme;
-}
-
 /// Every number of values that has tuned coefficients.
-vector<Scheme> tuned_schemes(int passes = 1)
+vector<Scheme> tuned_schemes()
 {
-  vector<Scheme> list;
-  for (const Formulation formulation : {FIRST, SECOND})
-    for (const int n : tuned_values(formulation))
-      list.push_back(tuned(scheme_of(formulation, n, passes, true)));
-  return list;
+  return schemes_of(MOMENTUM, 1, true);
 }
 
-Exact gear(Formulation formulation, int n)
+Exact gear(int n)
 {
   Exact c;
-  for (const Fraction &f :
-       formulation == FIRST ? first_order_coefficients(n) : second_order_coefficients(n, false))
+  for (const Fraction &f : second_order_coefficients(n, false))
     c.push_back({f.numerator, f.denominator});
   return c;
 }
 
-/// The rows from the order on, completed by the kernel.
-Coefficients completed(Formulation formulation, const Exact &c)
+/// The rows from row 2 on, completed by the kernel.
+Coefficients completed(const Exact &c)
 {
-  TunedSet set = {formulation, {}, {}};
-  for (size_t j = order_of(formulation) + 1; j < c.size(); ++j)
+  TunedSet set = {};
+  for (size_t j = 3; j < c.size(); ++j)
     set.tail.push_back((long double) c[j].numerator() / (long double) c[j].denominator());
   return set.coefficients();
 }
@@ -67,12 +50,14 @@ bool near(const Coefficients &found, const Exact &right)
   return found.size() == right.size();
 }
 
+constexpr int ORDER = 2;    ///< of the equation
+
 /// True if the powers required by the order vanish, up to rounding; c0_free: those independent of
 /// c_0.
-bool has_order(const Coefficients &c, int order, bool c0_free = false)
+bool has_order(const Coefficients &c, bool c0_free = false)
 {
-  const int n = int(c.size()), last = order == 1 ? (c0_free ? n - 1 : n) : (c0_free ? n : n + 1);
-  const Coefficients left = Oracle::characteristic(c, order, last + 1);
+  const int n = int(c.size()), last = c0_free ? n : n + 1;
+  const Coefficients left = Oracle::characteristic(c, ORDER, last + 1);
   return std::all_of(left.begin(), left.end(), [](long double x) {
     return std::fabs(x) < 1e-12L;
   });
@@ -80,22 +65,22 @@ bool has_order(const Coefficients &c, int order, bool c0_free = false)
 
 /// Coefficients determined by the order are rejected if they are 1 % off, and coefficients of the
 /// tail too, unless the conditions do not contain them (according to the oracle).
-void refuses_one_percent(const Exact &right, int order, bool c0_free = false)
+void refuses_one_percent(const Exact &right, bool c0_free = false)
 {
   const int n = int(right.size());
   const auto holds = [&](const Exact &exact) {
     Coefficients c;
     for (const Rational &x : exact) c.push_back((long double) x.numerator() / x.denominator());
-    return has_order(c, order, c0_free);
+    return has_order(c, c0_free);
   };
   ASSERT_TRUE(holds(right)) << n;
   for (int j = c0_free ? 1 : 0; j < n; ++j) {
     Exact wrong = right;
     wrong[j] = wrong[j] * Rational(101, 100);
-    bool contained = j <= order;
-    if (j > order) {
-      const Exact head = Oracle::with_head(wrong, order);
-      for (int k = c0_free ? 1 : 0; k < order; ++k) contained |= head[k] != right[k];
+    bool contained = j <= ORDER;
+    if (j > ORDER) {
+      const Exact head = Oracle::with_head(wrong, ORDER);
+      for (int k = c0_free ? 1 : 0; k < ORDER; ++k) contained |= head[k] != right[k];
     }
     EXPECT_EQ(holds(wrong), !contained) << n << " values, entry " << j;
   }
@@ -121,63 +106,50 @@ Rational rational_of(long double x)
 
 TEST(OrderConditions, MakeGearsCoefficientsOfGearsTails)
 {
-  for (const Formulation formulation : {FIRST, SECOND})
-    for (int n = fewest(formulation); n <= most(formulation); ++n) {
-      const Exact right = gear(formulation, n);
-      EXPECT_TRUE(near(completed(formulation, right), right)) << n;
-      for (size_t j = order_of(formulation) + 1; j < right.size(); ++j) {
-        Exact wrong = right;
-        wrong[j] = wrong[j] * Rational(101, 100);
-        EXPECT_FALSE(near(completed(formulation, wrong), right)) << n << ", " << j;
-      }
+  for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n) {
+    const Exact right = gear(n);
+    EXPECT_TRUE(near(completed(right), right)) << n;
+    for (size_t j = ORDER + 1; j < right.size(); ++j) {
+      Exact wrong = right;
+      wrong[j] = wrong[j] * Rational(101, 100);
+      EXPECT_FALSE(near(completed(wrong), right)) << n << ", " << j;
     }
+  }
 }
 
 TEST(OrderConditions, AreThoseOfTheCharacteristicEquation)
 {
   // tails near Gear's; the oracle solves for the other coefficients exactly
-  for (const Formulation formulation : {FIRST, SECOND})
-    for (int n = fewest(formulation); n <= most(formulation); ++n)
-      for (const int shift : {-1, 1, 2}) {
-        Exact c = gear(formulation, n);
-        for (int j = order_of(formulation) + 1; j < n; ++j)
-          c[j] = c[j] * Rational(16 + shift * (j % 3 + 1), 16);
-        EXPECT_TRUE(near(completed(formulation, c), Oracle::with_head(c, order_of(formulation))))
-            << n << ", " << shift;
-      }
+  for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n)
+    for (const int shift : {-1, 1, 2}) {
+      Exact c = gear(n);
+      for (int j = ORDER + 1; j < n; ++j) c[j] = c[j] * Rational(16 + shift * (j % 3 + 1), 16);
+      EXPECT_TRUE(near(completed(c), Oracle::with_head(c, ORDER))) << n << ", " << shift;
+    }
 }
 
 TEST(OrderConditions, AOnePercentErrorInAnEntryIsSeen)
 {
-  for (const Scheme &scheme : every_scheme())
-    refuses_one_percent(gear(scheme.formulation, scheme.values()), order_of(scheme.formulation));
+  for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n) refuses_one_percent(gear(n));
 }
 
 // --- the table
 
-TEST(TunedSets, AreOneForEachKindOfColumnsOfEachNumber)
+TEST(TunedSets, AreOneForEachNumber)
 {
+  int n = SECOND_FEWEST;
   for (const TunedSet &set : tuned_sets()) {
-    EXPECT_GE(set.values(), fewest(set.formulation));
-    EXPECT_LE(set.values(), most(set.formulation));
-    EXPECT_TRUE(has_tuned(set.formulation, set.values()));
-    EXPECT_EQ(tuned_set(set.formulation, set.values(), set.columns, set.any_norm), &set)
-        << "listed twice";
-    EXPECT_EQ(tuned_set(set.formulation, set.values(), Columns::INTEGRATED) != nullptr,
-              set.formulation == FIRST);
+    EXPECT_EQ(set.values(), n++);
+    EXPECT_EQ(tuned_set(set.values()), &set);
   }
-  for (const Formulation formulation : {FIRST, SECOND}) {
-    const vector<int> values = tuned_values(formulation);
-    EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));
-    EXPECT_FALSE(values.empty());
-    EXPECT_FALSE(has_tuned(formulation, most(formulation) + 1));
-  }
+  EXPECT_EQ(n, SECOND_MOST + 1);
+  EXPECT_EQ(tuned_set(n), nullptr);
 }
 
 TEST(TunedSets, HaveTheirOrderExactly)
 {
   for (const TunedSet &set : tuned_sets()) {
-    const int n = set.values(), order = order_of(set.formulation);
+    const int n = set.values(), order = ORDER;
     const bool c0_free = !std::isnan(set.c0);
     const Coefficients c = set.coefficients();
     Exact exact(n);
@@ -187,14 +159,14 @@ TEST(TunedSets, HaveTheirOrderExactly)
     if (c0_free) exact[0] = rational_of(c[0]);
     for (int j = 0; j < n; ++j)
       EXPECT_NEAR(double(c[j]), exact[j].value(), 2e-16) << n << ", " << j;
-    refuses_one_percent(exact, order, c0_free);
+    refuses_one_percent(exact, c0_free);
   }
 }
 
 TEST(TunedSets, ForgetErrorsOfTheHigherRows)
 {
   for (const TunedSet &set : tuned_sets()) {
-    const int n = set.values(), order = order_of(set.formulation);
+    const int n = set.values(), order = ORDER;
     const Coefficients exact = set.coefficients();
     const vector<double> c(exact.begin(), exact.end());
     double rows[MAX_VALUES] = {};
@@ -210,9 +182,12 @@ TEST(TunedSets, ForgetErrorsOfTheHigherRows)
 
 TEST(TunedSets, NoneMeansAnError)
 {
-  EXPECT_THROW(Integrator(tuned(scheme_of(SECOND, MAX_VALUES + 1)), 0.1), std::domain_error);
-  EXPECT_THROW(Integrator(tuned(scheme_of(FIRST, FIRST_MOST + 1)), 0.1), std::domain_error);
-  EXPECT_NO_THROW(Integrator(tuned(scheme_of(SECOND, tuned_values(SECOND).front())), 0.1));
+  EXPECT_THROW(Integrator(scheme_of(MOMENTUM, MAX_VALUES + 1), 0.1), std::domain_error);
+  for (const Formulation formulation : {FIRST, SECOND}) {
+    Scheme scheme = scheme_of(formulation, 6);
+    scheme.tuned = true;
+    EXPECT_THROW(Integrator(scheme, 0.1), std::domain_error);
+  }
 }
 
 // --- their properties
@@ -245,15 +220,6 @@ TEST(TunedOrders, PositionOfTheOscillator)
   }
 }
 
-TEST(TunedOrders, OrientationOfTheFreeTop)
-{
-  for (const Scheme &scheme : tuned_schemes(2)) {
-    if (scheme.values() < 5 || scheme.values() > 11) continue;
-    const int order = scheme.values() - (scheme.first() ? 0 : 1);
-    EXPECT_GT(slope_seen(free_top(), scheme), order - 0.6) << scheme;
-  }
-}
-
 namespace {
 
 /// Ratio of estimated and true local error of the position of the oscillating top, root mean
@@ -277,13 +243,9 @@ double estimated_by_true(const Scheme &scheme, double h)
 
 TEST(TunedEstimates, AreTheLocalErrorOrAboveIt)
 {
-  for (const Scheme &scheme : tuned_schemes(2)) {
+  for (const Scheme &scheme : tuned_schemes()) {
     if (scheme.values() > 9) continue;    // rounding of the state is close
     const double h = scheme.values() > 7 ? 0.12 : 0.1, wide = estimated_by_true(scheme, h);
-    if (scheme.first()) {    // an estimate of one order less
-      EXPECT_GT(wide, 1.0) << scheme;
-      continue;
-    }
     const double narrow = estimated_by_true(scheme, 0.75 * h);
     const double limit = (narrow - 0.5625 * wide) / (1.0 - 0.5625);    // without the term of h^2
     EXPECT_NEAR(limit, 1.0, 0.02) << scheme;
@@ -324,10 +286,8 @@ double measured_gain(const Scheme &scheme)
 
 TEST(Noise, OfRandomForcesIsTheGain)
 {
-  for (const Scheme &scheme :
-       {scheme_of(FIRST, 4), scheme_of(FIRST, 6), scheme_of(SECOND, 6), scheme_of(SECOND, 8),
-        tuned(scheme_of(SECOND, tuned_values(SECOND).back())),
-        tuned(scheme_of(FIRST, tuned_values(FIRST).back()))})
+  for (const Scheme &scheme : {scheme_of(FIRST, 4), scheme_of(FIRST, 6), scheme_of(SECOND, 6),
+                               scheme_of(SECOND, 8), scheme_of(MOMENTUM, SECOND_MOST)})
     EXPECT_NEAR(measured_gain(scheme) / noise_gain(scheme), 1.0, 0.03) << scheme;
 }
 
@@ -345,7 +305,7 @@ TEST(Noise, GrowsWithTheNumberOfGearsValues)
 TEST(Noise, RandomForcesHaveVelocityVerlet)
 {
   // a vibration with the same kicks as the method of Swope et al.
-  const Scheme scheme = tuned(scheme_of(SECOND, VERLET));
+  const Scheme scheme = scheme_of(MOMENTUM, VERLET);
   const RigidBody body = {2.0, {1.0, 1.0, 1.0}};
   const double h = 0.1;
   BodyState start = {};
@@ -383,5 +343,5 @@ TEST(Noise, SuitsFewValues)
     EXPECT_FALSE(suits_noise(scheme, Noise::RANDOM));
   }
   for (const Noise noise : {Noise::RANDOM, Noise::DISSIPATIVE})
-    EXPECT_TRUE(suits_noise(tuned(scheme_of(SECOND, VERLET)), noise));
+    EXPECT_TRUE(suits_noise(scheme_of(MOMENTUM, VERLET), noise));
 }

@@ -142,7 +142,7 @@ struct Host {
     for (size_t b = 0; b < bodies.size(); ++b)
       pending[b] =
           integrator.begin(loads[b], integrator.axes_of(rows[b].data()).data(), rows[b].data());
-    for (int pass = 0; pass < scheme.passes; ++pass) {
+    for (int pass = 0; pass < scheme.coupled_passes(); ++pass) {
       if (length) { ASSERT_TRUE(chain.advance(target_of(time() - h), twice_kinetic(), h, n)); }
       const double xi = length ? chain.friction() : 0.0;
       Friction friction = Multipliers{xi, xi};
