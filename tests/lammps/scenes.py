@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-FORMULATIONS = ["first", "second", "momentum"]
+FORMULATIONS = ["momentum", "second", "first"]
 
 # Two rigid triangles in a box without forces: for tests of commands and life cycles.
 TWO_MOLECULES = """

@@ -31,7 +31,7 @@ def test_the_step_decides(lmp_tree, data):
         assert [choice[:2] for choice in choices] == [(expected, False)]
         edge = float(re.match(r"for vibrations of ([\d.]+) and rotations of [\d.]+", choices[0][2])[1])
         assert (edge > 0.25) == (expected == 5)
-    assert "values auto, passes auto" in run(lmp_tree, data, "values auto").stdout
+    assert "values auto, corrector tuned" in run(lmp_tree, data, "values auto").stdout
 
 
 def test_few_values_need_few_evaluations_of_a_start(lmp_tree, data):
@@ -53,13 +53,13 @@ def test_the_edge_is_proportional_to_the_step(lmp_tree, data):
     assert edges[1] == pytest.approx(2 * edges[0], rel=0.1)
 
 
-@pytest.mark.parametrize("words", ["values 9", "values 5 project yes", "tolerance 1e-6"])
+@pytest.mark.parametrize("words", ["values 9", "values 5", "tolerance 1e-6"])
 def test_stated_numbers_are_not_changed(lmp_tree, data, words):
     assert chosen(run(lmp_tree, data, words, dt=LONG)) == []
 
 
 def test_other_methods(lmp_tree, data):
-    for words, expected in (("formulation first", 8), ("formulation first corrector gear", 6), ("corrector gear", 8)):
+    for words, expected in (("formulation first", 6), ("formulation second", 8), ("corrector gear", 8)):
         assert numbers(run(lmp_tree, data, words, dt=LONG)) == [expected]
 
 
@@ -263,7 +263,7 @@ def continued(lmp, data, words, later="", dt=LONG, before=""):
     return whole, last_frame(lmp.folder / "half.dump"), result
 
 
-@pytest.mark.parametrize("words", ["", "values 7", "values 9 project yes passes 2", "corrector gear"])
+@pytest.mark.parametrize("words", ["", "values 7", "formulation second", "corrector gear"])
 def test_a_restart_goes_on_with_the_method_of_the_file(lmp_tree, data, words):
     whole, half, result = continued(lmp_tree, data, words)
     assert chosen(result) == [] and "are rebuilt" not in result.stdout
@@ -278,7 +278,7 @@ def test_a_restart_keeps_its_number_outside_of_its_range(lmp_tree, data):
 
 
 def test_what_the_script_states_counts(lmp_tree, data):
-    whole, half, result = continued(lmp_tree, data, "", later="project yes")
+    whole, half, result = continued(lmp_tree, data, "formulation second", later="formulation second project no")
     assert "are rebuilt" not in result.stdout and not np.array_equal(whole, half)
     result = continued(lmp_tree, data, "", later="values 9")[2]
     assert "other settings of values" in result.stdout

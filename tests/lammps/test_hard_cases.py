@@ -41,7 +41,7 @@ def test_the_papers_small_step_leaves_rounding_only(lmp_wheel, formulation):
     compensated, plain = (run(compensate=word, **small) for word in ("yes", "no"))
     assert off(compensated) < 1e-12 < off(plain) < 2e-10
     assert max(compensated["v_qerror"].max(), plain["v_qerror"].max()) < 2e-12
-    if formulation != "momentum":  # which always projects
+    if formulation != "momentum":  # which has no such keyword
         free = run(dt=1e-3, steps=20_000, every=200, project="no", start="zero")
         assert free["v_qerror"].max() > 2e-12
 
@@ -91,7 +91,7 @@ def test_no_frame_is_preferred(lmp_wheel, formulation, pose):
 
 def test_a_frame_is_preferred_without_projection(lmp_wheel):
     """The equations depend on the length of q, and therefore on the frame."""
-    words = "project no start zero values 6"
+    words = "project no start zero passes 1 values 6"
     one, other = (in_the_cage(lmp_wheel, "passing", "second", turn, words, 0.1) for turn in (np.eye(3), TURN))
     assert np.abs(other @ TURN - one).max() > 1e-12
 

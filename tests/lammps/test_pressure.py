@@ -32,10 +32,9 @@ SCHEMES = {
     "values 7": 7,
     "values 9": 9,
     "values 6 corrector gear": 6,
-    "formulation momentum values 5": 5,
-    "formulation momentum values 7": 7,
+    "formulation second values 7": 7,
     "formulation first values 8": 8,
-    "formulation first values 7 corrector gear": 7,
+    "formulation first values 7": 7,
 }
 
 

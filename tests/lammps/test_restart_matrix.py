@@ -30,6 +30,7 @@ WORDS = {
     "first-6-compensated": dict(formulation="first", values=6, passes=1, compensate="yes"),
     "second-4": dict(formulation="second", values=4, corrector="gear"),
     "second-8": dict(formulation="second", values=8),
+    "momentum-9": dict(values=9),
     "second-12": dict(formulation="second", values=12, corrector="gear"),
     "second-8-compensated": dict(formulation="second", values=8, passes=2, compensate="yes"),
 }
@@ -47,7 +48,7 @@ def deck_of(scene, words, commands, end, stretch=1.0, grid="* * *"):
     if scene == "water":
         fix = "gear/quat molecule " + " ".join(f"{key} {value}" for key, value in words.items())
         return water("data.water", fix, dt=dt, steps=STEPS, run=commands)
-    known = dict(passes=2, compensate="no") | words | dict(dt=dt, every=STEPS, out="none")
+    known = dict(compensate="no") | words | dict(dt=dt, every=STEPS, out="none")
     text = whole_deck(EXAMPLES / scene / f"in.{scene}").replace("run ${steps}", commands)
     return f"{assigned(known)}processors {grid}\n{text}"
 

@@ -201,8 +201,7 @@ FACTORS = {
     "damp": (10, 30, 100, 1000, 10000),  # in steps
     "tchain": (1, 2, 3, 4, 6, 10),
     "thermostat": ("total", "separate"),
-    "formulation": ("first", "second"),
-    "corrector": ("tuned", "gear"),
+    "formulation": ("momentum", "second", "first"),
     "molecules": (1000, 1000, 1000, 1000, 4096),
 }
 
@@ -240,7 +239,7 @@ def test_no_chain_ends_a_run(lmp_tree, number):
     row = SAMPLE[number]
     (lmp_tree.folder / "nitrogen.molecule").write_text(DUMBBELL.replace("0.5 ", "0.549 "))
     words = f"temp {row['target']} {row['target']} {4 * row['damp']}" + "".join(
-        f" {name} {row[name]}" for name in ("tchain", "thermostat", "formulation", "corrector")
+        f" {name} {row[name]}" for name in ("tchain", "thermostat", "formulation")
     )
     nx, ny, nz = BOXES[row["molecules"]]
     deck = NITROGEN.format(words=words, nx=nx, ny=ny, nz=nz, dt=4.0, steps=300)

@@ -96,9 +96,9 @@ def test_the_motion_is_not_changed(lmp_wheel):
 @pytest.mark.parametrize(
     "words, dt, what",
     [
-        ("values 7", 0.0195, "7 values of formulation second and corrector tuned"),
-        ("corrector gear", 0.017, "8 values of formulation second and corrector gear"),
-        ("formulation first", 0.018, "8 values of formulation first and corrector tuned"),
+        ("values 7", 0.0195, "7 values of formulation momentum and corrector tuned"),
+        ("corrector gear", 0.017, "8 values of formulation momentum and corrector gear"),
+        ("formulation first", 0.012, "6 values of formulation first and corrector gear"),
     ],
 )
 def test_a_method_that_is_stated(lmp_wheel, words, dt, what):
