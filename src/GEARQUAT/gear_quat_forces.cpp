@@ -71,7 +71,6 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
   for (auto *fix : modify->get_fix_list()) {
     if (std::find(owners.begin(), owners.end(), fix) != owners.end()) continue;
     const int mask = modify->get_fix_mask(fix);
-    if (known(FixFact::REPEATABLE, fix) && (mask & FixConst::PRE_FORCE)) all_after = false;
     if (fix->time_integrate)
       why = name_of(fix) + " moves atoms";
     else if (mask & within_step)
@@ -211,7 +210,6 @@ void Forces::evaluate(int eflag, int vflag)
 /// Repeats Verlet::run() for a step without new neighbor lists, up to post_force() of fixes.
 void Forces::evaluate_styles(int eflag, int vflag)
 {
-  if (all_after && evaluated_by_run_style(eflag, vflag)) return;
   comm->forward_comm();
   clear();
   for (auto *fix : pre_force) fix->pre_force(vflag);

@@ -78,7 +78,6 @@ class Forces : protected Pointers {
  private:
   std::string why;
   std::vector<Fix *> pre_force, post_force;
-  bool all_after = true;    ///< no fix of post_force acts before the forces of the styles instead
   struct Copy {
     double *data;
     std::vector<double> values;
@@ -92,7 +91,6 @@ class Forces : protected Pointers {
   void look_at_variables();
   void look_at_time();
   std::vector<double> loads_at(bigint step, bool of_fixes);
-  bool evaluated_by_run_style(int eflag, int vflag);
   void clear();
   void clear_owned();
   void evaluate_styles(int eflag, int vflag);

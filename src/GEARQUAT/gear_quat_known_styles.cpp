@@ -5,8 +5,6 @@
 
 #include "gear_quat_known_styles.h"
 
-#include "gear_quat_declared.h"
-
 #include "bond.h"
 #include "compute.h"
 #include "fix.h"
@@ -283,14 +281,8 @@ std::string GearQuat::name_of(const Fix *fix)
   return fmt::format("fix {} ({})", fix->id, fix->style);
 }
 
-static constexpr char DECLARED[] = "LAMMPS declares it";
-
 const char *GearQuat::known(PairFact what, const Force *force)
 {
-  if (what == PairFact::UNREPEATABLE && force->pair) {
-    const int repeatable = declared_repeatable(force->pair);
-    if (repeatable != UNDECLARED) return repeatable ? nullptr : DECLARED;
-  }
   return reason_in(PAIRS, what, [force](const char *pattern) {
     return force->pair && const_cast<Force *>(force)->pair_match(pattern, 0, 1);
   });
@@ -298,10 +290,6 @@ const char *GearQuat::known(PairFact what, const Force *force)
 
 const char *GearQuat::known(FixFact what, const Fix *fix)
 {
-  if (what == FixFact::REPEATABLE) {
-    const int repeatable = declared_repeatable(fix);
-    if (repeatable != UNDECLARED) return repeatable ? DECLARED : nullptr;
-  }
   return reason_in(FIXES, what, [fix](const char *pattern) {
     return utils::strmatch(fix->style, pattern);
   });
@@ -333,10 +321,6 @@ const char *GearQuat::unrepeatable_run_style(const std::string &style)
 
 const char *GearQuat::unrepeatable_bond(const Force *force)
 {
-  if (force->bond) {
-    const int repeatable = declared_repeatable(force->bond);
-    if (repeatable != UNDECLARED) return repeatable ? nullptr : force->bond_style;
-  }
   for (const auto &bond : UNREPEATABLE_BONDS)
     if (const_cast<Force *>(force)->bond_match(bond.text)) return bond.text;
   return nullptr;
@@ -350,31 +334,24 @@ bool GearQuat::is_unrepeatable(const std::string &variable)
                      });
 }
 
-template <typename Style>
-static std::string source(const std::string &name, const Style *style, bool repeatable)
+static std::string repeatable_line(const std::string &name, bool repeatable)
 {
-  const int no_net_force = declared_no_net_force(style);
-  return fmt::format("{}: {}{} ({})", name, repeatable ? "yes" : "no",
-                     no_net_force == UNDECLARED ? ""
-                         : no_net_force         ? ", no net force"
-                                                : ", a net force",
-                     declared_repeatable(style) == UNDECLARED ? "from the tables of this fix"
-                                                              : "from LAMMPS");
+  return name + (repeatable ? ": yes" : ": no");
 }
 
-std::vector<std::string> GearQuat::sources_of_repeatability(LAMMPS *lmp)
+std::vector<std::string> GearQuat::repeatable_forces(LAMMPS *lmp)
 {
   const Force *force = lmp->force;
   std::vector<std::string> lines;
   if (force->pair)
-    lines.push_back(source(fmt::format("pair style {}", force->pair_style), force->pair,
-                           !known(PairFact::UNREPEATABLE, force)));
+    lines.push_back(repeatable_line(fmt::format("pair style {}", force->pair_style),
+                                    !known(PairFact::UNREPEATABLE, force)));
   if (force->bond)
-    lines.push_back(source(fmt::format("bond style {}", force->bond_style), force->bond,
-                           !unrepeatable_bond(force)));
+    lines.push_back(repeatable_line(fmt::format("bond style {}", force->bond_style),
+                                    !unrepeatable_bond(force)));
   for (auto *fix : lmp->modify->get_fix_list())
     if (lmp->modify->get_fix_mask(fix) & FixConst::POST_FORCE)
-      lines.push_back(source(name_of(fix), fix, known(FixFact::REPEATABLE, fix)));
+      lines.push_back(repeatable_line(name_of(fix), known(FixFact::REPEATABLE, fix)));
   return lines;
 }
 

@@ -4,9 +4,8 @@
 ------------------------------------------------------------------------- */
 
 /* Properties of other LAMMPS styles, looked up by name.  LAMMPS does not declare these properties,
-   so they were taken from its source code; every row of a table states its reason.  Where LAMMPS
-   does declare them (gear_quat_declared.h), the declaration takes precedence.  The callers decide on
-   the consequences.  In each table the first matching row counts.  Patterns have the syntax of
+   so they were taken from its source code; every row of a table states its reason.  The callers
+   decide on the consequences.  In each table the first matching row counts.  Patterns have the syntax of
    utils::strmatch() and begin with ^, so that they are not found within other names. */
 
 #ifndef LMP_GEAR_QUAT_KNOWN_STYLES_H
@@ -68,7 +67,7 @@ const char *known(ComputeFact what, const Compute *compute);
 const Fix *fix_with_forces(LAMMPS *lmp, const Fix *owner);
 /// One line for each style: whether its forces can be evaluated again, and the source of this
 /// information.
-std::vector<std::string> sources_of_repeatability(LAMMPS *lmp);
+std::vector<std::string> repeatable_forces(LAMMPS *lmp);
 /// The bond style whose bonds may break or change for good when they are evaluated, null for none.
 const char *unrepeatable_bond(const Force *force);
 /// True if that variable, as shown by `info variables`, changes whenever it is evaluated.

@@ -337,7 +337,7 @@ void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, 
   }
   if (args.report == Arguments::Report::LONG) {
     text += "  forces that can be evaluated again in a step\n";
-    for (const auto &line : sources_of_repeatability(lmp)) text += "    " + line + "\n";
+    for (const auto &line : repeatable_forces(lmp)) text += "    " + line + "\n";
   }
   for (const auto &line : advice) text += "  " + line + "\n";
   utils::logmesg(lmp, text);

@@ -5,7 +5,6 @@
 
 // access to LAMMPS' run styles
 
-#include "gear_quat_declared.h"
 #include "gear_quat_forces.h"
 
 #include "respa.h"
@@ -19,11 +18,6 @@ std::vector<double> RespaForces::steps(LAMMPS *lmp)
   const auto *respa = dynamic_cast<Respa *>(lmp->update->integrate);
   if (!respa) return {};
   return std::vector<double>(respa->step, respa->step + respa->nlevels);
-}
-
-bool Forces::evaluated_by_run_style(int eflag, int vflag)
-{
-  return evaluated_by(update->integrate, eflag, vflag);
 }
 
 void Forces::clear()
