@@ -30,12 +30,6 @@ class Respa {
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-/// Always false: a header that is not available declares whether the run style can do so.
-bool Forces::evaluated_by_run_style(int, int)
-{
-  return false;
-}
-
 void Forces::clear()
 {
   void *style = update->integrate;

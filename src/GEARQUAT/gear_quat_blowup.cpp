@@ -169,9 +169,10 @@ double thermal_rotation(LAMMPS *lmp, const Bodies &bodies, double kt)
 
 }    // namespace
 
-// a body under forces follows fewer radians in a step than a free one, by this factor
+// a body under forces follows fewer radians in a step than a free one, by this factor, and not more
+// than this number
 
-static constexpr double CLEAR_OF_FORCES = 0.8;
+static constexpr double CLEAR_OF_FORCES = 0.8, UNDER_FORCES = 0.5;
 
 void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &scheme,
                            const Pace &pace, double h)
@@ -197,7 +198,8 @@ void GearQuat::check_spins(LAMMPS *lmp, const Bodies &bodies, const Scheme &sche
                       lost.moment, lost.largest_moment);
     const double thermal = thermal_rotation(lmp, bodies, pace.kt);
     double step =
-        CLEAR_OF_FORCES * std::fabs(lost.longest_step) * std::min(1.0, lost.omega / thermal);
+        std::min(CLEAR_OF_FORCES * std::fabs(lost.longest_step), UNDER_FORCES / lost.omega) *
+        std::min(1.0, lost.omega / thermal);
     const double of_forces = pace.longest_step(scheme);
     if (of_forces > OVERLAP * step) step = std::min(step, of_forces);
     text += fmt::format(": {:g} radians in a step are more than {} values can follow; ",

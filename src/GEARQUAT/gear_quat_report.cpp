@@ -118,7 +118,7 @@ static const char cite_pressure[] =
     "}\n\n";
 
 static const char cite_gear[] =
-    "fix gear/quat corrector gear and tolerance: coefficients, and control of step and order\n\n"
+    "fix gear/quat: predictor-corrector method\n\n"
     "@Book{Gear1971,\n"
     " author = {C. William Gear},\n"
     " title = {Numerical Initial Value Problems in Ordinary Differential Equations},\n"
@@ -129,8 +129,9 @@ static const char cite_gear[] =
 void GearQuat::add_citations(LAMMPS *lmp, const Arguments &args)
 {
   if (!lmp->citeme) return;
-  lmp->citeme->add(args.scheme.formulation == Formulation::FIRST ? cite_first : cite_second);
-  if (!args.scheme.tuned) lmp->citeme->add(cite_gear);
+  lmp->citeme->add(cite_gear);
+  if (args.scheme.first()) lmp->citeme->add(cite_first);
+  if (args.scheme.formulation == Formulation::SECOND) lmp->citeme->add(cite_second);
   if (args.isokinetic != Isokinetic::NONE) lmp->citeme->add(cite_isokinetic);
   if (args.thermostat.damp > 0.0) lmp->citeme->add(cite_chains);
   if (args.pressure.any()) lmp->citeme->add(cite_pressure);

@@ -51,7 +51,7 @@ ABSURD = {
     "force": (TOO_MUCH, "id 5", "empty", NO_NUMBER),
     "forces": (TOO_MUCH, "id 5", "id 6", NO_NUMBER),
     "way": ("1e9", "id 4 5 6", "empty", "moves by"),
-    "turn": ("1e7", "id 5", "id 4", "turns faster than a step can follow"),
+    "turn": ("1e7", "id 5", "id 4", "turns by "),
 }
 
 

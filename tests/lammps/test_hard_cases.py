@@ -131,7 +131,7 @@ ESTIMATES = [f"f_move[{k}]" for k in (5, 7)] + [f"f_move[1][{k}]" for k in (4, 5
 
 
 @pytest.mark.parametrize("event", [dict(w=0.0, v=-5.0), dict(w=36.0, v=0.0)], ids=["wall", "spin"])
-def test_estimates_tell_the_error_of_fast_events(lmp_wheel, formulation, event):
+def test_estimates_tell_the_error_of_fast_events(lmp_wheel, event):
     """A top hits a wall with 75 kT, or rotates with ten thousand times the energy that heat would give it.
 
     An error dx of a position made in a step is worth |p| dx/dt in energy, one of an orientation
@@ -139,7 +139,7 @@ def test_estimates_tell_the_error_of_fast_events(lmp_wheel, formulation, event):
     """
     data, steps = EXAMPLES / "top" / "data.top", (0.004, 0.002, 0.001, 0.0005)
     settings = dict(before=WALL.format(**event), thermo=1, columns=" ".join(ESTIMATES))
-    decks = [body_deck(data, formulation, dt=dt, steps=round(2 / dt), **settings) for dt in steps]
+    decks = [body_deck(data, "momentum", dt=dt, steps=round(2 / dt), **settings) for dt in steps]
     errors = []
     for dt, run in zip(steps, tables(lmp_wheel.succeed(one_after_the_other(decks)))):
         values = [run[name] for name in ESTIMATES]
@@ -211,12 +211,12 @@ def parts(masses, places):
 
 
 @pytest.mark.parametrize("name", BODIES)
-def test_any_inertia_has_the_full_order_where_the_estimates_are_small(lmp_wheel, formulation, name):
+def test_any_inertia_has_the_full_order_where_the_estimates_are_small(lmp_wheel, name):
     """20 radians of the fastest rotation; the estimates of all steps add up to at most 1e-3."""
     masses, sites, omega = BODIES[name]
     time, counts = 20 / max(1.0, omega[2]), (40, 80, 160, 320, 640)
     light, heavy = min(masses), max(masses)
-    settings = dict(thermo=1, columns="f_move[5] f_move[7]", fix=f"gear/quat molecule formulation {formulation}")
+    settings = dict(thermo=1, columns="f_move[5] f_move[7]", fix="gear/quat molecule")
     settings |= dict(kinds=[1 + (mass > light) for mass in masses], masses=f"mass 1 {light}\nmass 2 {heavy}")
     settings["before"] = "fix springs all spring/self 1.0\nfix_modify springs energy yes"
     speeds = np.cross(omega, sites) @ TURN.T + [0.3, -0.2, 0.1]

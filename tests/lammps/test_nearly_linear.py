@@ -31,19 +31,18 @@ def test_refused_with_the_smallest_moment(lmp_wheel, bend, smallest):
         r"can follow; use a time step of (\S+) "
     )
     for ranks in (1, 4):
-        result = lmp_wheel.refuse(carbon_dioxide(bend, 2.7), "body 1 turns", ranks=ranks)
+        result = lmp_wheel.refuse(carbon_dioxide(bend, 4.0), "body 1 turns", ranks=ranks)
         assert not result.thermo and len(set(result.errors)) == 1
         omega, moment, largest, radians, step = map(float, re.search(told, result.words).groups())
         assert moment == pytest.approx(smallest, rel=1e-4)
         assert largest == pytest.approx(43.06, rel=1e-3)
-        assert omega == pytest.approx(2.7, rel=1e-3) and radians == pytest.approx(omega)
+        assert omega == pytest.approx(4.0, rel=1e-3) and radians == pytest.approx(omega)
     # the deck runs at the step in the message
-    lmp_wheel.succeed(carbon_dioxide(bend, 2.7, dt=step, steps=2000))
+    lmp_wheel.succeed(carbon_dioxide(bend, 4.0, dt=step, steps=2000))
 
 
 def test_what_is_followed_is_not_refused(lmp_wheel):
-    """The fastest of these rotations becomes unstable after a thousand steps; it is stable for a hundred more than the trial."""
-    decks = [carbon_dioxide(bend, spin, steps=100) for bend in (0.02, 0.002) for spin in (0.1, 0.2, 0.3)]
+    decks = [carbon_dioxide(bend, spin, steps=100) for bend in (0.02, 0.002) for spin in (0.3, 1.0, 3.0)]
     for table in lmp_wheel.succeed(one_after_the_other(decks)).thermo:
         assert table["KinEng"][-1] == pytest.approx(table["KinEng"][0], rel=3e-4)
 
@@ -51,7 +50,7 @@ def test_what_is_followed_is_not_refused(lmp_wheel):
 @pytest.mark.parametrize("n, told", [(12, True), (3, False)])
 def test_a_share_of_the_energy_that_will_be_too_much_is_warned_of(lmp_wheel, n, told):
     warning = "will turn, once it has its share of the kinetic energy, with an angular velocity of"
-    result = lmp_wheel.succeed(carbon_dioxide(0.02, 0.0, tumble=0.02, n=n, steps=5))
+    result = lmp_wheel.succeed(carbon_dioxide(0.002, 0.0, tumble=0.02, n=n, steps=5))
     assert (warning in result.words) == told
 
 
@@ -60,7 +59,7 @@ def test_an_infile_makes_it_linear(lmp_wheel):
     mass, inertia = 2 * O + C, 2 * O * LENGTH**2
     line = f"1\n1 {mass} 0 {C * 0.02 / mass} 0 0 {inertia} {inertia} 0 0 0 0 0 0 0 0 0.1 0 0 0\n"
     (lmp_wheel.folder / "bodies").write_text(line)
-    lmp_wheel.succeed(carbon_dioxide(0.02, 2.7, words="infile bodies", dt=2.0))
+    lmp_wheel.succeed(carbon_dioxide(0.02, 4.0, words="infile bodies", dt=2.0))
 
 
 def test_the_blow_up_names_the_moment(lmp_wheel):
@@ -73,7 +72,7 @@ def test_the_blow_up_names_the_moment(lmp_wheel):
 
 def test_a_run_of_no_steps_is_not_refused(lmp_wheel):
     """Run 0 can be used to print energies, or to scale velocities, so that the next run may be stable."""
-    deck = carbon_dioxide(0.02, 2.7, run="run 0\nvelocity all scale 1.0\nrun 20")
+    deck = carbon_dioxide(0.02, 4.0, run="run 0\nvelocity all scale 1.0\nrun 20")
     assert len(lmp_wheel.succeed(deck).thermo) == 2
 
 
@@ -84,7 +83,7 @@ def test_bodies_in_two_dimensions_turn_about_z_only(lmp_wheel):
     assert "will turn" not in result.words and "time step of" not in result.words
 
 
-def patchy(light, words="", omega=300.0):
+def patchy(light, words="", omega=800.0):
     """Particles with a mass at the center and patches of nearly no mass."""
     sites = np.array([[0.0, 0, 0], [0.5, 0, 0], [-0.25, 0.4, 0]])
     velocities = np.cross([0, 0, omega], sites)

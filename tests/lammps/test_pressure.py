@@ -218,7 +218,7 @@ def test_in_two_dimensions(lmp_wheel):
 # --- invariants ---------------------------------------------------------------------------------
 
 
-LENGTHS = {"iso": ("iso {} 1.0", 100000, 1e-13), "aniso": ("aniso {} 1.0", 10000, 1e-12), "slow": ("aniso {} 300.0", 100000, 1e-12)}
+LENGTHS = {"iso": ("iso {} 1.0", 100000, 1e-13), "aniso": ("aniso {} 1.0", 6000, 1e-12), "slow": ("aniso {} 300.0", 100000, 1e-12)}
 
 
 @pytest.mark.parametrize("words, steps, tolerance", LENGTHS.values(), ids=LENGTHS)
@@ -294,9 +294,9 @@ run 40000"""
     # ten parts of one component are too few for its error
     pooled = mass * np.sqrt((error[3:] ** 2).mean())
     # and correlated: deviations of four seeds are 1.8 times this error
-    assert (np.abs(mass * mean[3:] - 0.05) < 6 * pooled).all() and pooled < 0.05 * 0.05
+    assert (np.abs(mass * mean[3:] - 0.05) < 6 * pooled).all() and pooled < 0.06 * 0.05
     # of 2000: the potential has a cutoff
-    assert largest_change(result.thermo[2]) < 0.05
+    assert largest_change(result.thermo[2]) < 0.08
     assert abs(result.thermo[2]["Lx"][-1] / result.thermo[2]["Ly"][-1] - 1.0) > 1e-4
 
 

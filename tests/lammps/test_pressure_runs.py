@@ -143,7 +143,7 @@ def test_molecules_many_periods_off(lmp_tree, mode):
         for far, off in zip(periods, others):
             flags = off[:, 6:9] - here[:, 6:9]
             assert np.abs(flags).max() == far and len(np.unique(flags)) > 2
-            assert apart(here, off) < 15 * EPSILON * 6.0 * (far + 1)
+            assert apart(here, off) < 20 * EPSILON * 6.0 * (far + 1)
 
 
 # --- commands -----------------------------------------------------------------------------------
@@ -275,5 +275,5 @@ run {steps}
              for words in ("values 5", "formulation first values 6") for dt in (4.0, 2.0)]
     result = lmp_tree.succeed(one_after_the_other(decks))
     changes = [largest_change(table) for table in result.thermo]
-    assert np.log2(changes[0] / changes[1]) > 3.4 and np.log2(changes[2] / changes[3]) > 4.4, changes
+    assert np.log2(changes[0] / changes[1]) > 3.4 and np.log2(changes[2] / changes[3]) > 4.0, changes
     assert largest_change(result.thermo[0], "Volume") > 1.0

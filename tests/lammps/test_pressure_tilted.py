@@ -29,7 +29,7 @@ def tilted(words, dt=0.005, steps=100, **settings):
 @pytest.mark.parametrize("mode", MODES)
 def test_orders(lmp_wheel, mode):
     time, steps = 0.4, (0.02, 0.01, 0.005)
-    schemes = {"values 5": 5, "values 7": 7, "formulation momentum values 7": 7, "formulation first values 8": 8}
+    schemes = {"values 5": 5, "values 7": 7, "formulation first values 6": 6}
     decks = [tilted(f"values 9 {MODES[mode]}", 0.0025, 160)]
     decks += [tilted(f"{s} {MODES[mode]}", dt, round(time / dt)) for s in schemes for dt in steps]
     result, frames = ends(lmp_wheel, decks)

@@ -192,7 +192,7 @@ NOT_IN_A_FILE = {
         COMMAND: "masks",
         OTHERS: "fix args fleet bodies ownership others",
         RUN: "set_up vibrations chosen of_file",
-        MESSAGES: "advised_step warned_pass warned_values",
+        MESSAGES: "advised_step warned_values",
     },
 }
 

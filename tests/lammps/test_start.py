@@ -244,7 +244,7 @@ def two_fixes(lmp, steps, dt, first="", second="", **settings):
 
 PAIRS = {
     "alike": ("", "", "order 8"),
-    "of two formulations": ("formulation first", "values 8 corrector gear", "order 8 and 9"),
+    "of two formulations": ("formulation first", "values 8 corrector gear", "order 7 and 9"),
     "of other numbers": ("values 9 corrector gear", "values 7 corrector gear", "order 9 and 7"),
 }
 

@@ -135,12 +135,11 @@ def test_style_headers_include_their_base_class_only():
 @pytest.mark.parametrize(
     "keywords, papers",
     {
-        "": {"Rapaport1985"},
+        "": set(),
         "formulation first": {"Evans1977"},
-        "corrector gear": {"Rapaport1985", "Gear1971"},
-        "tolerance 1e-9": {"Rapaport1985", "Gear1971"},
+        "formulation second": {"Rapaport1985"},
         "formulation first isokinetic total": {"Evans1977", "EvansGauss1983"},
-        "temp 1.0 1.0 0.5": {"Rapaport1985", "Martyna1992"},
+        "temp 1.0 1.0 0.5": {"Martyna1992"},
     }.items(),
 )
 def test_papers_of_the_features_in_use(lmp_tree, keywords, papers, tmp_path):
@@ -151,4 +150,4 @@ def test_papers_of_the_features_in_use(lmp_tree, keywords, papers, tmp_path):
     subprocess.run(command, input=deck, text=True, cwd=tmp_path, env=environment, timeout=60, check=True)
     asked = re.findall(r"^@\w+\{(\w+),", (tmp_path / "cite.bib").read_text(), re.M)
     ours = set(asked) - {"LAMMPS", "Thompson2022"}
-    assert ours == papers and len(asked) == len(set(asked))
+    assert ours == {"Gear1971"} | papers and len(asked) == len(set(asked))
