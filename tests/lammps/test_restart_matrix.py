@@ -48,7 +48,8 @@ def deck_of(scene, words, commands, end, stretch=1.0, grid="* * *"):
     if scene == "water":
         fix = "gear/quat molecule " + " ".join(f"{key} {value}" for key, value in words.items())
         return water("data.water", fix, dt=dt, steps=STEPS, run=commands)
-    known = dict(compensate="no") | words | dict(dt=dt, every=STEPS, out="none")
+    known = dict(formulation="default", corrector="default", passes=0, compensate="no")  # after other decks
+    known |= words | dict(dt=dt, every=STEPS, out="none")
     text = whole_deck(EXAMPLES / scene / f"in.{scene}").replace("run ${steps}", commands)
     return f"{assigned(known)}processors {grid}\n{text}"
 
