@@ -44,8 +44,6 @@ class MotionSums {
   /// kinetic energy of bodies with derivatives
   static constexpr int SUMS = 5;
   double sums[SUMS] = {};
-  /// |omega|^2 of the body that turns fastest; its maximum is taken over bodies
-  double omega2 = 0.0;
 
   static constexpr int LEVELS = 4;    ///< derivatives in use, from the second on
   /// h^j/j! y^(j) of a body, where the angular momentum along the axes of space is the y' of
@@ -64,10 +62,7 @@ class MotionSums {
     const int known = std::min(series.terms - 2, LEVELS);
     for (int k = 0; k < known; ++k) derivatives[k] = derivative(series, k + 2);
     if (known > 2) add_derivatives(body, state, derivatives, known, step);
-    add_spin(body, state);
   }
-  /// Adds only the angular velocity of a body.
-  void add(const RigidBody &body, const BodyState &state) { add_spin(body, state); }
   /// A body with a known load and no derivatives.
   void add(const RigidBody &body, const BodyState &state, const double *torque_body)
   {
@@ -76,7 +71,6 @@ class MotionSums {
       sums[2] += torque_body[k] * torque_body[k] / body.inertia[k];
       sums[3] += body.inertia[k] * state.omega_body[k] * state.omega_body[k];
     }
-    add_spin(body, state);
   }
 
   /// A body with second derivatives after four steps of this length in a row.  Differences take the
@@ -92,7 +86,6 @@ class MotionSums {
       derivatives[3][i] = (d - a + 3.0 * (b - c)) / 60.0;
     }
     add_derivatives(body, state, derivatives, LEVELS, h);
-    add_spin(body, state);
   }
   /// The fast edge from its value by differences, which is 2 sin(z/2) for a vibration of any phase.
   static double true_edge(double by_differences)
@@ -113,7 +106,6 @@ class MotionSums {
   {
     return sums[1] > 0.0 && h * h * sums[1] > LEAST_CHANGE * LEAST_CHANGE * sums[4];
   }
-  double turn(double h) const { return std::fabs(h) * std::sqrt(omega2); }
 
  private:
   /// 1.75 in SPC/E at 300 K, 4 and more in fluids whose bodies collide rarely.  A value that is too
@@ -148,20 +140,12 @@ class MotionSums {
     sums[4] += body.mass * dot3(state.velocity, state.velocity);
     for (int k = 0; k < 3; ++k) sums[4] += inertia[k] * state.omega_body[k] * state.omega_body[k];
   }
-  void add_spin(const RigidBody &body, const BodyState &state)
-  {
-    double all = 0.0;
-    for (int k = 0; k < 3; ++k)
-      if (body.inertia[k] > 0.0) all += state.omega_body[k] * state.omega_body[k];
-    omega2 = std::max(omega2, all);
-  }
 };
 
 /// Input to the choice of the number of values.
 struct ChoiceOfValues {
   double edge = 0.0;     ///< radians in a step, see MotionSums
   bool exact = false;    ///< from derivatives
-  double turn = 0.0;     ///< radians in a step of the body that turns fastest
   Noise noise = Noise::NONE;
   double friction = 0.0;      ///< of a coupling, times the step
   bool may_be_gear = true;    ///< the corrector may be changed, too
@@ -174,15 +158,9 @@ struct ChoiceOfValues {
   };
 
   // tuned: radians in a step up to which nine values are best; radians beyond which no number
-  // conserves the energy for long; radians at the step that is advised then; and the factor of the
-  // hysteresis of a present choice.  Turns only in formulation second: momentum turns exactly
+  // conserves the energy for long; and the factor of the hysteresis of a present choice
 
-  static constexpr double EDGE_OF_NINE = 0.25, TURN_OF_NINE = 0.4;
-  static constexpr double LONGEST_EDGE = 0.6, LONGEST_TURN = 0.5;
-  static constexpr double ADVISED_TURN = 0.4;
-
-  // the same for turns in the first formulation, with eight values
-  static constexpr double FIRST_LONGEST_TURN = 0.25, FIRST_ADVISED_TURN = 0.2;
+  static constexpr double EDGE_OF_NINE = 0.25, LONGEST_EDGE = 0.6;
 
   // the longest edge of other schemes as a part of their fastest stable oscillation, which is
   // LONGEST_EDGE for the most permissive of the schemes above; and the advised edge as a part of the
@@ -195,7 +173,7 @@ struct ChoiceOfValues {
   Choice choose(const Scheme &scheme, int present = 0) const
   {
     Choice choice = {scheme, Reason::FORMULATION};
-    if (!scheme.first() && scheme.tuned) choice = {by_motion(scheme, present), Reason::MOTION};
+    if (scheme.tuned) choice = {by_motion(scheme, present), Reason::MOTION};
     if (permits(choice.scheme)) return choice;
     choice.reason = suits_noise(choice.scheme, noise) ? Reason::FRICTION : Reason::NOISE;
     if (noise == Noise::RANDOM && !scheme.first()) {
@@ -210,22 +188,14 @@ struct ChoiceOfValues {
   }
 
   /// True if a longer step does not require another number of values than the chosen one.
-  bool chooses_longest(const Scheme &scheme) const
-  {
-    return automatic && scheme.tuned && !scheme.first();
-  }
+  bool chooses_longest(const Scheme &scheme) const { return automatic && scheme.tuned; }
   /// True if a step is too long for this scheme, or, if the number of values may be chosen, for any.
   bool too_long(const Scheme &scheme) const { return advised_part(scheme) < 1.0; }
   /// A step that is not too long, as a part of the current step.
   double advised_part(const Scheme &scheme) const
   {
     const double longest = shakes() ? longest_edge(scheme) : HUGE_VAL;
-    const double by_edge = edge > longest ? ADVISED_PART * longest / edge : 1.0;
-    if (!automatic || !scheme.tuned) return by_edge;
-    if (scheme.momentum()) return by_edge;
-    const double most = scheme.first() ? FIRST_LONGEST_TURN : LONGEST_TURN;
-    const double advised = scheme.first() ? FIRST_ADVISED_TURN : ADVISED_TURN;
-    return std::min(by_edge, turn > most ? advised / turn : 1.0);
+    return edge > longest ? ADVISED_PART * longest / edge : 1.0;
   }
 
  private:
@@ -241,8 +211,7 @@ struct ChoiceOfValues {
   Scheme by_motion(Scheme scheme, int present) const
   {
     const double band = present == 9 ? BAND : present == 5 ? 1.0 / BAND : 1.0;
-    const bool follows_turn = scheme.momentum() || turn <= band * TURN_OF_NINE;
-    scheme.rows = edge <= band * EDGE_OF_NINE && follows_turn ? 9 : 5;
+    scheme.rows = edge <= band * EDGE_OF_NINE ? 9 : 5;
     return scheme;
   }
 
@@ -263,9 +232,7 @@ struct ChoiceOfValues {
     };
     const int fewest = scheme.first() ? FIRST_FEWEST : SECOND_FEWEST;
     if (scheme.tuned)
-      for (const int n :
-           scheme.first() ? std::vector<int>{7, 6, 5, 4, 3} : std::vector<int>{9, 7, 5, 4})
-        add(true, n);
+      for (const int n : {9, 7, 5, 4}) add(true, n);
     if (!scheme.tuned || may_be_gear)
       for (int n = scheme.first() ? 6 : 8; n >= fewest; --n) add(false, n);
     return list;

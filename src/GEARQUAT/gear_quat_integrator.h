@@ -396,8 +396,8 @@ class Integrator : public Kinematics {
     cross3(w, a, turned);
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
-      angle_body[i] =
-          corrector.c[0] * a[i] + corrector.moment * (turned[i] - per_inertia[i] * (bent[i] + lever[i]));
+      angle_body[i] = corrector.c[0] * a[i] +
+          corrector.moment * (turned[i] - per_inertia[i] * (bent[i] + lever[i]));
     return dot3(a, a);
   }
 

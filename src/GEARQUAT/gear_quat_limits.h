@@ -98,7 +98,7 @@ inline double fastest_oscillation(const Scheme &scheme)
       {0.0, 0.24, 0.32, 0.44, 0.60, 0.44, 0.32, 0.22, 0.16, 0.12},     // with c0 of velocities
       {1.00, 0.92, 0.28, 0.34, 0.24, 0.12},                            // first formulation
       {0.72, 0.42, 0.22, 0.10, 0.04, 0.02},                            // with predicted momentum
-      {2.00, 1.04, 0.94, 0.54, 0.70, 0.66, 0.60, 0.56, 0.60, 0.50},    // tuned
+      {2.00, 1.04, 0.96, 0.54, 0.70, 0.66, 0.60, 0.56, 0.60, 0.50},    // tuned
   };
   const int row = scheme.tuned
       ? 4

@@ -31,11 +31,9 @@ ChoiceOfValues Motion::scene_of(const MotionSums &here) const
   MotionSums all = here;
   const auto sums = over_ranks(MPI_SUM, all.sums, world);
   std::copy(sums.begin(), sums.end(), all.sums);
-  all.omega2 = over_ranks(MPI_MAX, all.omega2, world);
   ChoiceOfValues scene;
   scene.edge = bodies.number() > 0 ? all.fast_edge(step.length()) : HUGE_VAL;
   scene.exact = all.knows_derivatives(step.length());
-  scene.turn = all.turn(step.length());
   scene.noise = noise_of_forces(lmp, ownership).noise;
   scene.may_be_gear = !args.states("corrector");
   scene.automatic = args.automatic_values;
@@ -82,8 +80,7 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
   else if (choice.reason == Reason::FORMULATION)
     why = "as always with corrector gear";
   else if (std::isfinite(scene.edge))
-    why = fmt::format("for vibrations of {:.2g} and rotations of {:.2g} radians in a step",
-                      scene.edge, scene.turn);
+    why = fmt::format("for vibrations of {:.2g} radians in a step", scene.edge);
   else
     why = bodies.number() > 0 ? "because the motion is not known before it begins"
                               : "because there are no bodies yet";
@@ -112,10 +109,10 @@ void Motion::warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &schem
   else if (!scene.chooses_longest(scheme) && !scheme.first())
     otherwise = ", or leave out keywords values and corrector";
   error->warning(FLERR,
-                 "Fix gear/quat {}: {}vibrations of {:.2g} and rotations of {:.2g} radians in a "
-                 "step are more than {} can follow for long; use a time step of {:g} or shorter{}",
+                 "Fix gear/quat {}: {}vibrations of {:.2g} radians in a step are "
+                 "more than {} can follow for long; use a time step of {:g} or shorter{}",
                  fix->id, begins ? "" : fmt::format("at step {} ", update->ntimestep), scene.edge,
-                 scene.turn, who, rounded_down(advised), otherwise);
+                 who, rounded_down(advised), otherwise);
 }
 
 void Motion::look_at_vibrations()
@@ -145,23 +142,20 @@ void Motion::warn_of_values(const ChoiceOfValues &scene)
   warned_values = true;
   if (comm->me == 0)
     error->warning(FLERR,
-                   "Fix gear/quat {}: at step {} vibrations of {:.2g} and rotations of {:.2g} "
+                   "Fix gear/quat {}: at step {} vibrations of {:.2g} "
                    "radians in a step require {} values, but histories began with {} for a slower "
                    "motion; use keyword values {}, or define the fix again before the next run",
-                   fix->id, update->ntimestep, scene.edge, scene.turn, suits.scheme.values(),
-                   present, suits.scheme.values());
+                   fix->id, update->ntimestep, scene.edge, suits.scheme.values(), present,
+                   suits.scheme.values());
 }
 
 /// Returns the reason to start histories again with another number of values, null for none.
-/// Reasons are a change of the step, of a rotation or of forces.  Vibrations are from the last
+/// Reasons are a change of the step or of forces.  Vibrations are from the last
 /// start.  Collective.
 const char *Motion::another_scheme_suits()
 {
   if (!args.automatic_values || edge_rate == 0.0) return nullptr;
-  MotionSums here;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    here.add(bodies.rigid_of(ibody), bodies.state_of(ibody));
-  ChoiceOfValues scene = scene_of(here);
+  ChoiceOfValues scene = scene_of(MotionSums());
   scene.edge = edge_rate * std::fabs(step.length());
   using Reason = ChoiceOfValues::Reason;
   const Scheme &present = step.scheme();

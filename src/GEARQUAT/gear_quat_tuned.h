@@ -208,8 +208,8 @@ inline int Scheme::order() const
 struct CorrectorCoefficients {
   using Array = std::array<double, MAX_VALUES>;
 
-  Array c = {};          ///< first: of all columns, which have equations of the first order
-  double weight2;        ///< of the residuals of positions and quaternions, squared
+  Array c = {};           ///< first: of all columns, which have equations of the first order
+  double weight2;         ///< of the residuals of positions and quaternions, squared
   double moment = 0.0;    ///< momentum: see SteadyDeviations
 
   /// Throws std::domain_error if the scheme is tuned and has a number of values without a tuned

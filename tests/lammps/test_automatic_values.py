@@ -29,7 +29,7 @@ def test_the_step_decides(lmp_tree, data):
     for dt, expected in ((SHORT, 9), (LONG, 5)):
         choices = chosen(run(lmp_tree, data, dt=dt))
         assert [choice[:2] for choice in choices] == [(expected, False)]
-        edge = float(re.match(r"for vibrations of ([\d.]+) and rotations of [\d.]+", choices[0][2])[1])
+        edge = float(re.match(r"for vibrations of ([\d.]+) radians", choices[0][2])[1])
         assert (edge > 0.25) == (expected == 5)
     assert "values auto, corrector tuned" in run(lmp_tree, data, "values auto").stdout
 

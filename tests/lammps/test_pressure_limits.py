@@ -23,7 +23,7 @@ velocity all create 1e-6 87287"""
 TARGET = 0.3
 #: and the limits in radians per step
 SCHEMES = {
-    "values 5": 0.94,
+    "values 5": 0.96,
     "values 7": 0.70,
     "values 9": 0.60,
     "values 6 corrector gear": 0.42,

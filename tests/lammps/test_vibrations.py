@@ -29,9 +29,9 @@ fix move all gear/quat molecule {words}
 """
 COLD = "temp 0.3 0.3 0.5"
 AGAIN = "\nunfix move\nfix move all gear/quat molecule\nrun 1"
-BEGINS = re.compile(r"Fix gear/quat move: \d values, for vibrations of (\S+) and")
-TOO_FAST = re.compile(r"move: at step (\d+) vibrations of (\S+) and rotations of \S+ radians in a step are more than (.*?) can follow")
-MORE = re.compile(r"move: at step (\d+) vibrations of (\S+) and rotations of \S+ radians in a step require 5 values")
+BEGINS = re.compile(r"Fix gear/quat move: \d values, for vibrations of (\S+) radians")
+TOO_FAST = re.compile(r"move: at step (\d+) vibrations of (\S+) radians in a step are more than (.*?) can follow")
+MORE = re.compile(r"move: at step (\d+) vibrations of (\S+) radians in a step require 5 values")
 ADVICE = re.compile(r"can follow for long; use a time step of (\S+) or shorter")
 
 

@@ -47,11 +47,10 @@ MotionSums sums_of_start(const RigidBody &body, const BodyState &s, const LoadOf
   return sums;
 }
 
-ChoiceOfValues scene(double edge, double turn = 0.0)
+ChoiceOfValues scene(double edge)
 {
   ChoiceOfValues scene;
   scene.edge = edge;
-  scene.turn = turn;
   return scene;
 }
 
@@ -97,7 +96,6 @@ TEST(FastEdge, IsNoneOfAFreeRotation)
   s.omega_body[0] = 2.0;
   const MotionSums sums = sums_of_start(BALL, s, free_of_load, 0.05);
   EXPECT_EQ(sums.fast_edge(0.1), 0.0);
-  EXPECT_NEAR(sums.turn(0.1), 0.2, 1e-15);
 }
 
 TEST(FastEdge, OfManyIsThatOfTheFastOnes)
@@ -137,12 +135,9 @@ TEST(FastEdge, ByLoadsIsOfTheMeanSquareFrequency)
 TEST(Choice, SlowMotionHasNineAndFastMotionFive)
 {
   const Scheme scheme = automatic(MOMENTUM);
-  const double edge = ChoiceOfValues::EDGE_OF_NINE, turn = ChoiceOfValues::TURN_OF_NINE;
+  const double edge = ChoiceOfValues::EDGE_OF_NINE;
   EXPECT_EQ(scene(0.99 * edge).choose(scheme).scheme.values(), 9);
   EXPECT_EQ(scene(1.01 * edge).choose(scheme).scheme.values(), 5);
-  EXPECT_EQ(scene(0.0, 0.99 * turn).choose(scheme).scheme.values(), 9);
-  EXPECT_EQ(scene(0.0, 1.01 * turn).choose(scheme).scheme.values(), 5);
-  EXPECT_EQ(scene(0.0, 2.0).choose(automatic(Formulation::MOMENTUM)).scheme.values(), 9);
   EXPECT_EQ(scene(INFINITY).choose(scheme).scheme.values(), 5);
   EXPECT_EQ(scene(0.1).choose(scheme).reason, Reason::MOTION);
 }
@@ -202,8 +197,8 @@ TEST(Choice, FrictionOfAThermostatIsFollowed)
 
 TEST(Choice, LongStepsAreTold)
 {
-  const auto told = [](double edge, double turn, bool exact, Noise noise, Formulation formulation) {
-    ChoiceOfValues long_step = scene(edge, turn);
+  const auto told = [](double edge, bool exact, Noise noise, Formulation formulation) {
+    ChoiceOfValues long_step = scene(edge);
     long_step.exact = exact;
     long_step.noise = noise;
     return long_step.too_long(automatic(formulation));
@@ -214,10 +209,8 @@ TEST(Choice, LongStepsAreTold)
   EXPECT_FALSE(told(0.61, true, Noise::RANDOM, MOMENTUM));
   EXPECT_FALSE(told(0.22, true, Noise::NONE, FIRST));
   EXPECT_TRUE(told(0.24, true, Noise::NONE, FIRST));
-  ChoiceOfValues both = scene(1.0, 1.0);
+  ChoiceOfValues both = scene(1.0);
   both.exact = true;
-  EXPECT_DOUBLE_EQ(both.advised_part(automatic(MOMENTUM)), 0.4);
-  both.turn = 0.1;
   EXPECT_DOUBLE_EQ(both.advised_part(automatic(MOMENTUM)), 0.5);
   EXPECT_NEAR(both.advised_part(automatic(FIRST)), 5.0 / 6.0 * 2.0 / 3.0 * 0.34, 1e-12);
 }
@@ -228,7 +221,7 @@ TEST(Choice, AStatedNumberHasALimitOfItsOwn)
   const auto longest = [](int values, bool is_tuned) {
     Scheme scheme = automatic(is_tuned ? MOMENTUM : SECOND);
     scheme.rows = values;
-    ChoiceOfValues stated = scene(0.01, 0.6);
+    ChoiceOfValues stated = scene(0.01);
     stated.exact = true;
     stated.automatic = false;
     while (!stated.too_long(scheme)) stated.edge += 0.01;
