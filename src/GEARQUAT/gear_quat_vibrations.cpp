@@ -59,12 +59,8 @@ MotionSums Vibrations::sums()
   MotionSums here;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const auto one = records.find(bodies.body_at(ibody).id);
-    const RigidBody &rigid = bodies.rigid_of(ibody);
-    const BodyState &state = bodies.state_of(ibody);
     if (one != records.end() && one->second.steps == MotionSums::LEVELS)
-      here.add(rigid, state, one->second.seconds, width);
-    else
-      here.add(rigid, state);
+      here.add(bodies.rigid_of(ibody), bodies.state_of(ibody), one->second.seconds, width);
   }
   choose_end();
   return here;
