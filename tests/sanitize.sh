@@ -144,7 +144,7 @@ part_valgrind() {
 
   # Only memory counts: valgrind computes in double precision what the start computes in extended one, so the harness
   # refuses the last digits of estimated errors. The harness itself loses a LAMMPS, so leaks are looked for below.
-  for name in first_molecule second_molecule second_extended second_values first_values; do
+  for name in first_molecule second_molecule momentum_extended second_values first_values; do
     check "harness $name" "$folder" '^global_data, restart, respa' "${bytes[@]}" "$tree/test_fix_timestep" \
       "$ROOT/tests/lammps/fix-timestep-gear_quat_$name.yaml" --gtest_filter=FixTimestep.plain -s
   done
