@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 using namespace Drive;
 
 namespace {
@@ -166,6 +168,35 @@ TEST(Momentum, OrdersOfOrientationsInTheCage)
       return Check::attitude_distance(end(momentum(values, false), h).q, exact.q);
     };
     EXPECT_GT(std::log2(error(0.16) / error(0.08)), values - 1.4) << values;
+  }
+}
+
+// t^N, for which the rows deviate from the derivatives by constants: the deviations of their own
+// accord, and a velocity with which the positions are exact
+
+TEST(Momentum, TheMomentIsThatOfASteadyMotion)
+{
+  for (const int n : {5, 6, 7, 9, 12}) {
+    const CorrectorCoefficients c(momentum(n));
+    const auto binomial = [](int k, int j) {
+      return std::round(std::tgamma(k + 1) / std::tgamma(j + 1) / std::tgamma(k - j + 1));
+    };
+    std::vector<double> e(n);
+    double residual = 0.0;
+    for (int step = 0; step < 3000; ++step) {
+      std::vector<double> predicted(n);
+      for (int j = 2; j < n; ++j) {
+        predicted[j] = -binomial(n, j);
+        for (int k = j; k < n; ++k) predicted[j] += binomial(k, j) * e[k];
+      }
+      residual = -predicted[2];
+      for (int j = 2; j < n; ++j) e[j] = predicted[j] + c.driven[j] * residual;
+    }
+    e[1] = 1.0 - c.driven[0] * residual - std::accumulate(e.begin() + 2, e.end(), 0.0);
+    double moment = -1.0 / (n + 1);
+    for (int j = 1; j < n; ++j) moment += e[j] / (j + 1);
+    EXPECT_NEAR(moment / residual, c.moment, 1.0e-9) << n;
+    EXPECT_GT(std::fabs(c.moment), 0.01) << n;
   }
 }
 
