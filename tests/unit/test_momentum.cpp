@@ -190,9 +190,9 @@ TEST(Momentum, TheMomentIsThatOfASteadyMotion)
         for (int k = j; k < n; ++k) predicted[j] += binomial(k, j) * e[k];
       }
       residual = -predicted[2];
-      for (int j = 2; j < n; ++j) e[j] = predicted[j] + c.driven[j] * residual;
+      for (int j = 2; j < n; ++j) e[j] = predicted[j] + c.c[j] * residual;
     }
-    e[1] = 1.0 - c.driven[0] * residual - std::accumulate(e.begin() + 2, e.end(), 0.0);
+    e[1] = 1.0 - c.c[0] * residual - std::accumulate(e.begin() + 2, e.end(), 0.0);
     double moment = -1.0 / (n + 1);
     for (int j = 1; j < n; ++j) moment += e[j] / (j + 1);
     EXPECT_NEAR(moment / residual, c.moment, 1.0e-9) << n;
