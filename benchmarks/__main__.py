@@ -44,7 +44,7 @@ def search(studies, wanted, seed, iterations):
         if study.search is None:
             raise click.UsageError(f"{study.key} has nothing to search for")
         try:
-            click.echo(study.search(*wanted, seed, iterations))
+            click.echo(study.search(wanted, seed, iterations))
         except ValueError as error:
             raise click.UsageError(str(error)) from error
 
@@ -79,7 +79,7 @@ def report(finding, check):
 @click.option("--hours", type=click.FloatRange(min=0), default=1.0)
 @click.option("--lmp")
 @click.option("--out", type=click.Path(file_okay=False, path_type=Path))
-@click.option("--search", "wanted", type=(str, int), metavar="FORMULATION VALUES")
+@click.option("--search", "wanted", type=int, metavar="N")
 @click.option("--seed", type=int, default=1)
 @click.option("--iterations", type=click.IntRange(min=1), default=60)
 def main(
@@ -87,7 +87,7 @@ def main(
 ):
     """Measure the numbers on the pages of doc/; the head of the script explains the options."""
     failed, studies = 0, chosen(names)
-    if wanted:
+    if wanted is not None:
         return search(studies, wanted, seed, iterations)
     for study, parts in studies:
         folder = out or ROOT / "build" / "benchmarks" / study.key

@@ -33,7 +33,7 @@ Templates extend ``page.md.j2`` and fill its block ``body`` with sentences and w
     {{ x | to(".1e") }}  {{ n | grouped }}
 """
 
-from .decks import EXAMPLES, FORMULATIONS, ROOT, deck  # noqa: F401
+from .decks import EXAMPLES, ROOT, deck  # noqa: F401
 from .lab import Job, Lab  # noqa: F401
 from .panels import Bars, Curve, Panel, draw, floor  # noqa: F401
 from .runner import LammpsError  # noqa: F401

@@ -7,7 +7,12 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 #: kind -> (colors from light to dark, marker)
-_LOOKS = {"second": ("Blues", "o"), "first": ("Oranges", "s"), "rigid": ("Greys", "D")}
+_LOOKS = {
+    "momentum": ("Blues", "o"),
+    "second": ("Greens", "v"),
+    "first": ("Oranges", "s"),
+    "rigid": ("Greys", "D"),
+}
 
 
 @dataclass(frozen=True)
@@ -28,24 +33,10 @@ class Method:
         return self.kind != "rigid"
 
 
-#: formulation -> numbers of values for which the fix has tuned coefficients
-TUNED = {"second": (4, 5, 6, 7, 8, 9, 10, 11, 12), "first": (3, 4, 5, 6, 7, 8)}
-
-
 def gear(formulation, values, compensate=False, **more):
-    """Fix gear/quat with this number of ``values``; ``more``: variables of the decks, such as passes or c0.
-
-    The coefficients are Gear's if there are no tuned coefficients; with 0 passes the fix repeats passes until they
-    converge.
-    """
-    if more.get("passes") == 0:
-        del more["passes"]
-    if values not in TUNED.get(formulation, ()):
-        more = {"corrector": "gear"} | more
+    """Fix gear/quat with this number of ``values``; ``more``: variables of the decks, such as corrector or c0."""
     variables = {"formulation": formulation, "values": values, **more}
-    words = [formulation, f"N = {values}"]
-    for name, value in more.items():
-        words.append(f"{value} pass{'es' * (value > 1)}" if name == "passes" else f"{name} {value}")
+    words = [formulation, f"N = {values}", *(f"{name} {value}" for name, value in more.items())]
     key = "-".join(map(str, variables.values()))
     if compensate:
         key, words = f"{key}-compensated", [*words, "compensated"]
@@ -58,13 +49,12 @@ def rigid(style, method):
     return Method(style.replace("/", "-"), f"fix {style}", {"method": method}, "rigid")
 
 
-#: defaults of the fix for smooth motion: values of each formulation, and passes
-DEFAULT_VALUES, DEFAULT_PASSES = {"second": 9, "first": 8}, 0
-#: these defaults, and the defaults of version 0.2, which used Gear's coefficients
-DEFAULTS = {f: gear(f, n, passes=DEFAULT_PASSES) for f, n in DEFAULT_VALUES.items()}
-GEARS = {f: gear(f, n, passes=2, corrector="gear") for f, n in (("second", 8), ("first", 6))}
+#: formulation -> default number of values; with formulation momentum for slow motion.  Formulations second and first, those
+#: of the paper, have Gear's coefficients.
+DEFAULT_VALUES = {"momentum": 9, "second": 8, "first": 6}
+DEFAULTS = {formulation: gear(formulation, n) for formulation, n in DEFAULT_VALUES.items()}
 #: the fix without a keyword, which chooses the number of values itself
-AUTOMATIC = Method("default", "no keyword", {}, "second")
+AUTOMATIC = Method("default", "no keyword", {}, "momentum")
 
 
 def looks(methods):

@@ -41,7 +41,7 @@ class Bars:
     names: tuple
     below: np.ndarray
     more: np.ndarray
-    color: str = "second"
+    color: str = "momentum"
 
 
 @dataclass(frozen=True)

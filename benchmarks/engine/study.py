@@ -78,8 +78,8 @@ class Study:
     two quiet cores.  ``measure(lab)`` returns plain data, ``find(data)`` a Finding.  ``page``: the page
     doc/PAGE.md (default: the key), written from the template PAGE.md.j2; its pictures go to doc/PAGE.
     ``parts``: parts that can be run alone, as KEY/PART.  ``blocks``: file of the checkout -> template of the
-    block that the study writes there.  ``search(formulation, values, seed, iterations)``, if there is
-    one, returns the text that --search prints, or raises ValueError.
+    block that the study writes there.  ``search(values, seed, iterations)``, if there is one,
+    returns the text that --search prints, or raises ValueError.
     """
 
     key: str

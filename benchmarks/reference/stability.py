@@ -52,38 +52,15 @@ def second_order_coefficients(values, c0="position"):
     return [head * Fraction(values - 2, values - 1) if c0 == "position" else head, *tail]
 
 
-def second_step(c, omega_h, rate=0.0, passes=1):
-    """Matrix (N, N) of one step of the second formulation with coefficients ``c`` (N,).
+def second_step(c, omega_h, rate=0.0):
+    """Matrix (N, N) of one step of x'' = -omega^2 x + (rate/h) x' with coefficients ``c`` (N,).
 
-    Equation: x'' = -omega^2 x + (rate/h) x', with the force at the predicted x; each pass recomputes the term of the
-    rate, as the kernel does.  Elements have the same type as in ``c`` (an array of floats, or of objects such as
-    mpmath's numbers).
+    Position and velocity are predicted.  Elements have the same type as in ``c`` (an array of floats, or of objects
+    such as mpmath's numbers).
     """
     predict = pascal(len(c), "upper").astype(c.dtype)
-    step = predict
-    for _ in range(passes):
-        target = (rate * step[1] - omega_h**2 * predict[0]) / 2
-        step = step + np.outer(c, target - step[2])
-    return step
-
-
-def first_step(driven, integrating, omega_h, momentum="corrected", rate=0.0, passes=1):
-    """Matrix (2N, 2N) of one step of the first formulation: x' = v, v' = -omega^2 x + (rate/h) v.
-
-    Histories of position, with the coefficients ``integrating``, and of velocity, with ``driven``; the
-    position is corrected with the corrected velocity, or with the predicted one.
-    """
-    n = len(driven)
-    predict = np.kron(np.eye(2, dtype=int), pascal(n, "upper").astype(int)).astype(driven.dtype)
-    step = predict
-    # units: velocity history in omega times length, so that only omega h appears
-    for _ in range(passes):
-        before, target = step[n], rate * step[n] - omega_h * predict[0]
-        velocity = step[n:] + np.outer(driven, target - step[n + 1])
-        of = velocity[0] if momentum == "corrected" else before
-        position = step[:n] + np.outer(integrating, omega_h * of - step[1])
-        step = np.concatenate([position, velocity])
-    return step
+    target = (rate * predict[1] - omega_h**2 * predict[0]) / 2
+    return predict + np.outer(c, target - predict[2])
 
 
 def second_order_step(values, omega_h, c0="position"):
@@ -91,10 +68,18 @@ def second_order_step(values, omega_h, c0="position"):
     return second_step(np.array(second_order_coefficients(values, c0), dtype=float), omega_h)
 
 
-def first_order_step(values, omega_h, momentum="corrected"):
-    """``first_step`` with Gear's coefficients."""
-    c = np.array(first_order_coefficients(values), dtype=float)
-    return first_step(c, c, omega_h, momentum)
+def first_order_step(n, omega_h, momentum="corrected"):
+    """Matrix (2N, 2N) of one step of x' = v, v' = -omega^2 x with Gear's coefficients for ``n`` values.
+
+    Histories of position and of velocity; the position is corrected with the corrected velocity, or with the predicted
+    one.
+    """
+    c = np.array(first_order_coefficients(n), dtype=float)
+    # units: velocity history in omega times length, so that only omega h appears
+    predict = np.kron(np.eye(2), pascal(n, "upper"))
+    velocity = predict[n:] - np.outer(c, omega_h * predict[0] + predict[n + 1])
+    of = velocity[0] if momentum == "corrected" else predict[n]
+    return np.concatenate([predict[:n] + np.outer(c, omega_h * of - predict[1]), velocity])
 
 
 def linear_limit(step_matrix):

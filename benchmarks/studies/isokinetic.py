@@ -22,7 +22,7 @@ TITLES = {
     "separate": "`isokinetic separate`",
     THERMOSTAT: "`fix rigid/nvt/small`",
 }
-COLORS = {"total": "first", "separate": "second", THERMOSTAT: "total"}
+COLORS = {"total": "first", "separate": "momentum", THERMOSTAT: "total"}
 MOLECULES, TEMPERATURE = 216, 300.0
 SAMPLES = 500
 #: kcal/mol of all molecules in kJ/mol per mole of molecules

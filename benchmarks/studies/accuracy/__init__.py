@@ -14,8 +14,8 @@ from benchmarks.engine.session import Session
 
 from . import choice, evaluate, figures, heldout, plan, runs, tables
 
-#: errors that the sentences of the page use
-SAMPLE, FINE = 1e-6, 1e-8
+#: error that the sentences of the page use
+SAMPLE = 1e-6
 #: parts of the study with the scenes of heldout.py and choice.py, and their share of the work
 HELD_OUT, CHOICE = "heldout", "choice"
 SHARE = 0.05
@@ -28,7 +28,8 @@ def _milliseconds(cost):
 def _of_case1(results):
     """Tables, measurements and variables of the template from test case 1."""
     shown, measurements = tables.case1(results)
-    for name in ("evaluations", "orders", "rounding", "modify"):
+    shown["evaluations"] = tables.evaluations(results)
+    for name in ("orders", "rounding", "modify"):
         shown[name], found = getattr(tables, name)(results)
         measurements += found
     method, best = tables.cheapest_setting(results, "case1", SAMPLE)
@@ -73,12 +74,6 @@ def find(results):
         shown, measurements, context = _of_case1(results)
     if scenes - {"case1", "water-plain"}:
         shown["other_speedups"] = tables.other_speedups(results)
-    if "top" in scenes:
-        task = results, "top", FINE, "evaluations"
-        one, several = (tables.cheapest_setting(*task, passes)[1] for passes in plan.PASSES)
-        if one and several:
-            saved = 1 - several.value / one.value
-            context["passes"] = {"error": tables.power(FINE), "saved": saved}
     if {"water", "water-plain"} <= scenes:
         context["cutoff"] = tables.cutoff(results)
     if results.heldout:

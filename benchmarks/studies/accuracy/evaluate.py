@@ -152,8 +152,8 @@ def price(results, scene, method, target, unit="seconds", extrapolate=False):
 
 
 def expected_order(formulation, values):
-    """Order of the error of positions with the tuned coefficients of N values.
+    """Order of the error of positions with N values, at least.
 
-    It is N, except N - 1 in the second formulation with odd N (see Scheme::order() of the kernel).
+    It is N, except N - 1 for odd N with tuned coefficients (see Scheme::order() of the kernel).
     """
-    return values - values % 2 if formulation == "second" else values
+    return values - values % 2 if formulation == "momentum" else values

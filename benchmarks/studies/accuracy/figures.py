@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from benchmarks.engine import Curve, Panel, draw
-from benchmarks.engine.methods import looks
+from benchmarks.engine.methods import DEFAULTS, gear, looks
 from benchmarks.engine.panels import RECONSTRUCTED
 from gearquat_analysis.style import COLOR, STYLE
 
@@ -52,8 +52,8 @@ def draw_main(path, results):
     """Error in test case 1 against wall time, and against force evaluations."""
     best, _ = tables.cheapest_setting(results, "case1", 1e-8)
     shown = {plan.RIGID_NVE: ("fix rigid/nve/small", "#444444", "D", 2e-7, (8, 6))}
-    shown[plan.DEFAULTS["first"]] = ("first\nformulation", COLOR["first"], "s", 2e-9, (10, -8))
-    shown[plan.DEFAULT] = ("fix gear/quat,\ndefaults", COLOR["second"], "o", 1e-11, (40, -24))
+    shown[DEFAULTS["second"]] = ("formulation\nsecond", COLOR["second"], "s", 2e-9, (10, -8))
+    shown[plan.DEFAULT] = ("fix gear/quat,\ndefaults", COLOR["momentum"], "o", 1e-11, (40, -24))
     if best not in (None, plan.DEFAULT):
         shown[best] = ("cheapest\nsettings", "#56b4e9", "v", 3e-11, (-62, -26))
     with plt.rc_context(STYLE | {"font.size": 9.5, "lines.linewidth": 1.7}):
@@ -78,11 +78,9 @@ def draw_main(path, results):
 # --- panels ---------------------------------------------------------------------------------------
 def _few(scene):
     """Method -> color, marker and line, the same in all scenes, for the methods in the panels."""
-    few = {*plan.FEW_METHODS, *plan.ROUGH_METHODS, plan.setting("second", 12)}
+    few = {*plan.FEW_METHODS, *plan.ROUGH_METHODS, gear("momentum", 12)}
     look = looks([method for method in plan.ALL_METHODS if method in few])
     look[plan.RIGID_SMALL]["line"] = ":"
-    look[plan.setting("second", 8, 1)]["line"] = "--"
-    look[plan.GEARS["second"]]["line"] = ":"
     return {method: own for method, own in look.items() if method in scene.methods}
 
 
@@ -138,7 +136,7 @@ def order_panels(results):
     """Error against step for every N with compensated sums, fitted lines, largest usable steps."""
     fits, panels = tables.order_fits(results), []
     for name, numbers in plan.VALUES.items():
-        colors, curves = looks([plan.setting(name, n) for n in numbers]), []
+        colors, curves = looks([gear(name, n) for n in numbers]), []
         for n, (method, own) in zip(numbers, colors.items()):
             steps, errors, fit = fits[name, n]
             curves.append(Curve("", steps, errors, own["color"], "", "o"))
@@ -150,7 +148,7 @@ def order_panels(results):
             if limit:
                 curves.append(Curve("", np.array([limit]), np.array([0.2]), own["color"], "", "v"))
         scales = {"log": "xy", "xticks": (1, 0.5, 0.2, 0.1, 0.05, 0.02), "ylim": (1e-14, 1)}
-        title, error = f"{name} formulation, compensated sums", "error of the center of mass"
+        title, error = f"formulation {name}, compensated sums", "error of the center of mass"
         panels.append(Panel(title, "step", error, curves, **scales))
     return panels
 
@@ -173,9 +171,8 @@ def pictures(results):
         note = f"lines: fitted orders; triangles: largest usable steps; {RECONSTRUCTED}"
         found["orders"] = partial(draw, panels=order_panels(results), note=note)
     if "top" in scenes:
-        note = "broad: lines of fitted order; dashed: one pass; dotted: Gear's coefficients"
         panels = top_panels(results, scenes["top"])
-        found["top"] = partial(draw, panels=panels, columns=3, note=note)
+        found["top"] = partial(draw, panels=panels, columns=3, note="broad: lines of fitted order")
     if {"water", "water-plain"} <= set(scenes):
         found["cutoff"] = cutoff_panels(results)
     return found

@@ -9,33 +9,16 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from benchmarks.engine import decks
-from benchmarks.engine.methods import (
-    AUTOMATIC,
-    DEFAULT_PASSES,
-    DEFAULT_VALUES,
-    DEFAULTS,
-    GEARS,
-    gear,
-    rigid,
-)
+from benchmarks.engine.methods import AUTOMATIC, DEFAULT_VALUES, DEFAULTS, gear, rigid
 
-PASSES = 1, DEFAULT_PASSES
 #: columns in the log of every scene (examples/common/in.motion), and an additional one
 TOTAL, NORM, TANGENCY = "v_total", "v_qerror", "f_move[4]"
-VALUES = {"second": range(4, 13), "first": range(3, 9)}
-
-
-def setting(formulation, values, passes=DEFAULT_PASSES, **more):
-    """A setting of fix gear/quat; its name has the number of passes, unless passes are repeated until convergence."""
-    return gear(formulation, values, passes=passes, **more)
-
-
+VALUES = {"momentum": range(4, 13), "second": range(4, 13), "first": range(3, 9)}
 #: the fix without keywords
 DEFAULT = AUTOMATIC
 RIGID_NVE, RIGID_SMALL = rigid("rigid/nve/small", "rigid"), rigid("rigid/small", "rigid_verlet")
 ALL_METHODS = (
-    *(setting(name, n, passes) for passes in PASSES for name in VALUES for n in VALUES[name]),
-    *GEARS.values(),
+    *(gear(name, n) for name in VALUES for n in VALUES[name]),
     DEFAULT,
     RIGID_NVE,
     RIGID_SMALL,
@@ -49,13 +32,8 @@ def _few(*settings):
 
 
 #: methods of scenes with steps of milliseconds and of quick runs, and of scenes with discontinuous forces
-FEW_METHODS = _few(
-    *(setting("second", n) for n in (7, 11)),
-    setting("first", 6),
-    setting("second", 8, 1),
-    GEARS["second"],
-)
-ROUGH_METHODS = _few(setting("second", 7), setting("first", 6), GEARS["second"])
+FEW_METHODS = _few(*(gear("momentum", n) for n in (5, 7, 11)))
+ROUGH_METHODS = _few(gear("momentum", 5))
 
 
 def geometric(first, last, ratio):
@@ -198,7 +176,7 @@ def scenes(quick):
 #: steps of the runs for round-off, and of the runs that time the fix
 ROUNDING_STEPS = (0.02, 0.01, 0.005, 0.002, 0.001)
 MODIFY_STEPS, MODIFY_DT = 200_000, 0.02
-MODIFY = (RIGID_NVE, DEFAULT, DEFAULTS["first"], RIGID_SMALL)
+MODIFY = (RIGID_NVE, DEFAULT, DEFAULTS["second"], DEFAULTS["first"], RIGID_SMALL)
 
 
 def scene_runs(scene):
@@ -210,7 +188,7 @@ def order_runs(scene, quick):
     """(formulation, N) -> runs with compensated sums, to reduce round-off."""
     runs, blocks = {}, geometric(20, 400, 2**0.5 if quick else 2**0.125)
     for name, n in ((name, n) for name in VALUES for n in VALUES[name]):
-        method = setting(name, n, compensate=True)
+        method = gear(name, n, compensate=True)
         runs[name, n] = [Run(scene, method, block * scene.samples) for block in blocks]
     return runs
 
@@ -219,7 +197,7 @@ def rounding_runs(scene, quick):
     """(formulation, True for compensated sums) -> runs with small steps."""
     runs, steps = {}, ROUNDING_STEPS[:2] if quick else ROUNDING_STEPS
     for name, compensate in itertools.product(DEFAULT_VALUES, (False, True)):
-        method = setting(name, DEFAULT_VALUES[name], compensate=compensate)
+        method = gear(name, DEFAULT_VALUES[name], compensate)
         runs[name, compensate] = [Run(scene, method, round(scene.end / dt)) for dt in steps]
     return runs
 

@@ -4,14 +4,15 @@ All bounds are defined here; every other number is measured.
 """
 
 from dataclasses import astuple, fields
+from functools import partial
 
 import numpy as np
 
 from benchmarks.engine import Measurement, Table
-from benchmarks.engine.methods import GEARS
+from benchmarks.engine.methods import DEFAULTS, gear
 from benchmarks.engine.page import grouped
 from benchmarks.engine.statistics import order
-from benchmarks.reference.stability import linear_limit
+from benchmarks.reference.stability import first_order_step, linear_limit, second_order_step
 from benchmarks.studies.coefficients import kernel
 
 from . import plan
@@ -28,8 +29,6 @@ MOST_ROUNDING, MOST_MODIFY = {False: 5e-11, True: 1e-12}, 1.0
 NONE = "–"
 GEAR = {method.key for method in plan.ALL_METHODS if method.gear}
 THEIRS = f"time of `{plan.RIGID_NVE.label}` relative to"
-#: a step, and the largest error with the defaults of the first formulation
-FIRST_STEP, MOST_FIRST = 0.1, 3e-7
 ROWS = ("`fix gear/quat`, default settings", "`fix gear/quat`, cheapest settings")
 
 
@@ -44,13 +43,9 @@ def significant(number, digits=2):
     return grouped(rounded) if rounded >= 10 else f"{rounded:g}"
 
 
-def cheapest_setting(results, scene, target, unit="seconds", passes=None):
-    """(Method, Cost) of the cheapest setting of fix gear/quat; (None, None) if none reaches the error.
-
-    ``passes``: only settings with this number of passes, 0 for passes until convergence.
-    """
+def cheapest_setting(results, scene, target, unit="seconds"):
+    """(Method, Cost) of the cheapest setting of fix gear/quat; (None, None) if none reaches the error."""
     ours = [m for m in results.scenes[scene].methods if m.gear]
-    ours = [m for m in ours if passes in (None, m.variables.get("passes", 0))]
     return cheapest({method: price(results, scene, method, target, unit) for method in ours})
 
 
@@ -98,8 +93,9 @@ def case1(results):
 
 
 def evaluations(results):
-    """Force evaluations in test case 1; table and measurements."""
-    methods = {"default settings": plan.DEFAULT, "`corrector gear`": GEARS["second"]}
+    """Table of force evaluations in test case 1."""
+    methods = {"default settings": plan.DEFAULT}
+    methods |= {f"`formulation {name}`": DEFAULTS[name] for name in ("second", "first")}
     cells = {f"`fix gear/quat`, {words}": [] for words in (*methods, "best number of values")}
     cells |= {"this setting is": [], plan.RIGID_NVE.label: []}
     for target in TARGETS:
@@ -109,17 +105,8 @@ def evaluations(results):
         texts = [*map(count_text, (*costs, best)), method.label if method else NONE, count_text(theirs)]
         for row, text in zip(cells.values(), texts):
             row.append(text)
-    error = error_at(*results.errors("case1", plan.DEFAULTS["first"]), FIRST_STEP)
-    what = f"test case 1, first formulation, default settings, step {FIRST_STEP:g}: error"
     header = ("force evaluations", *(f"error {power(target)}" for target in TARGETS))
-    return Table(header, [[label, *row] for label, row in cells.items()]), [Measurement(what, error, most=MOST_FIRST)]
-
-
-def error_at(steps, errors, step):
-    """Error at a step between measured ones, interpolated log-log; arrays (n,)."""
-    order = np.argsort(steps)
-    steps, errors = np.log(np.asarray(steps)[order]), np.log(np.asarray(errors)[order])
-    return float(np.exp(np.interp(np.log(step), steps, errors)))
+    return Table(header, [[label, *row] for label, row in cells.items()])
 
 
 def other_speedups(results):
@@ -138,13 +125,10 @@ def other_speedups(results):
 
 
 # --- order, stability, rounding, time in the fix --------------------------------------------------
-def limit_of(formulation, n, made=kernel.tuned):
-    """Largest stable omega h of the linear test equation, for positions and quaternions.
-
-    ``made``: kernel.tuned or kernel.gear, which return the Corrector.
-    """
-    corrector = made(formulation, n)
-    return linear_limit(corrector.step)
+def limit_of(formulation, n):
+    """Largest stable omega h of the linear test equation."""
+    steps = {"second": partial(second_order_step, n), "first": partial(first_order_step, n)}
+    return linear_limit(steps.get(formulation) or kernel.tuned(n).step)
 
 
 def order_fits(results):
@@ -155,8 +139,7 @@ def order_fits(results):
 
 def orders(results):
     """Order and slope of each N, and the largest stable steps; table and measurements."""
-    header = ["formulation", "N", "order", "slope", "ω Δt, linear", "ω Δt, Gear's"]
-    header += ["largest usable step, 1 pass", "largest usable step, `passes auto`"]
+    header = ["formulation", "N", "order", "slope", "ω Δt, linear", "largest usable step"]
     rows, found = [], []
     for (name, n), (steps, errors, fit) in order_fits(results).items():
         expected, cancels = expected_order(name, n), sign_change(steps, errors)
@@ -165,11 +148,9 @@ def orders(results):
         least = expected - ORDER_MARGIN if n >= LEAST_VALUES else None
         what = f"{name} formulation, N = {n}: order of the error of position"
         found.append(Measurement(what, slope, error, ".2f", remark=remark, least=least))
-        limits = [results.limits.get(("case1", plan.setting(name, n, p).key)) for p in plan.PASSES]
-        steps = [NONE if limit is None else f"{limit:.2f}" for limit in limits]
+        limit = results.limits.get(("case1", gear(name, n).key))
         text = found[-1].text if fit else NONE
-        linear = [f"{limit_of(name, n, made):.2f}" for made in (kernel.tuned, kernel.gear)]
-        rows.append([name, n, expected, text, *linear, *steps])
+        rows.append([name, n, expected, text, f"{limit_of(name, n):.2f}", f"{limit:.2f}" if limit else NONE])
     return Table(header, rows), found
 
 

@@ -34,21 +34,20 @@ def claim_table(claims):
 def table7(results):
     """Times at which the formulations diverge, for every start and threshold.
 
-    The last row is for comparison: the times at which fix rigid/nve/small diverges from the second formulation with the
-    defaults of the fix.
+    The last row is for comparison: the times at which fix rigid/nve/small diverges from the defaults of the fix.
     """
     step = results.step
     header = ["apart by " + " / ".join(f"{t:g}" for t in THRESHOLDS)]
     header += [f"case {case}, step {dt:g}" for case, dt in step.items()]
     rows = [("the paper, which gives no threshold", *PAPER_TIMES)]
     remarks = dict.fromkeys(AS_PRINTED, " (as the paper ran)")
-    remarks[ACCURATE] = " (defaults of the fix)"
+    remarks[ACCURATE] = " (other defaults of the fix)"
     for key, row in ROWS.items():
         times = [show_times(parting_times(results, case, key)) for case in step]
         rows.append((row.label + remarks.get(key, ""), *times))
-    pair = ("rigid", "second")
+    pair = ("rigid", "momentum")
     times = [show_times(parting_times(results, case, ACCURATE, pair)) for case in step]
-    return Table(header, [*rows, ("fix rigid/nve/small against the second formulation", *times)])
+    return Table(header, [*rows, ("fix rigid/nve/small against the defaults of the fix", *times)])
 
 
 def error_table(first, steps, errors):
@@ -72,7 +71,7 @@ def measurements(position, energy, steps, count):
     ):
         for label, row in errors.items():
             for step, error in zip(of_steps, row):
-                bounded = label in (accuracy.FIRST, accuracy.SECOND) and step == checked
+                bounded = label == accuracy.DEFAULT and step == checked
                 most = MOST_ERROR if bounded else None
                 found.append(Measurement(f"{label}, step {step:g}: {words}", error, most=most))
     return found
@@ -102,7 +101,7 @@ def find(results):
     count = {verdict: verdicts.count(verdict) for verdict in (REPRODUCED, EXPLAINED, NOT)}
     position, energy = accuracy.position_errors(results), accuracy.energy_errors(results)
     steps, at = accuracy.energy_steps(results), ACCURACY_STEPS.index(CHECKED_STEP)
-    ours, rigid = energy[accuracy.SECOND], energy[accuracy.RIGID]
+    ours, rigid = energy[accuracy.DEFAULT], energy[accuracy.RIGID]
     tables = {
         "claims": claim_table(claims),
         "table7": table7(results),

@@ -13,12 +13,14 @@ from . import divergence as dv
 from .plan import ACCURACY_END, ACCURACY_STEPS, ACCURATE, AS_PRINTED, COARSE_STEPS
 
 PAPER = AS_PRINTED[0]
+DEFAULT = "fix gear/quat"
 SECOND, FIRST = "fix gear/quat, second formulation", "fix gear/quat, first formulation"
 PAPER_SECOND = "the paper's choices, second formulation"
 PAPER_FIRST = "the paper's choices, first formulation"
 RIGID = "fix rigid/nve/small"
 #: label -> (row, formulation)
 METHODS = {
+    DEFAULT: (ACCURATE, "momentum"),
     SECOND: (ACCURATE, "second"),
     FIRST: (ACCURATE, "first"),
     PAPER_SECOND: (PAPER, "second"),

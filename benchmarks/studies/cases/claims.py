@@ -141,7 +141,7 @@ def energy_error(results, case, formulation, fine=False):
         yield Reading(
             body, f"{error:.2g} ({100 * error / swing:.2g} %)", bool(error <= VISIBLE * swing)
         )
-    for name, label in ((formulation, "defaults of the fix"), ("rigid", "fix rigid/nve/small")):
+    for name, label in (("momentum", "defaults of the fix"), ("rigid", "fix rigid/nve/small")):
         error = np.abs(dv.energy_error(results.get(case, ACCURATE, name))).max()
         yield Reading(label, f"{error:.2g}")
 
@@ -247,7 +247,7 @@ def leaving_direction(results):
 
 def omega_first(results):
     """Case 1: errors with the corrected and with the predicted omega in Eq. 5."""
-    best = results.get(1, ACCURATE, "second").center[int(OMEGA_END)]
+    best = results.get(1, ACCURATE, "momentum").center[int(OMEGA_END)]
     ends = [
         results.get(1, ACCURATE, "first", OMEGA_STEP, omega).center[-1]
         for omega in ("corrected", "predicted")

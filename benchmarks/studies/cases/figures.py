@@ -102,10 +102,11 @@ def parting_figure(results):
 # --- the overview -------------------------------------------------------------------------------
 LOOKS = {
     accuracy.RIGID: {"color": "#888888", "marker": "s"},
-    accuracy.PAPER_SECOND: {"color": "#56b4e9", "marker": "o", "line": "--"},
-    accuracy.PAPER_FIRST: {"color": "#e69f00", "marker": "o", "line": "--"},
+    accuracy.PAPER_SECOND: {"color": "#009e73", "marker": "o", "line": "--"},
+    accuracy.PAPER_FIRST: {"color": "#d55e00", "marker": "o", "line": "--"},
     accuracy.FIRST: {"color": "#d55e00", "marker": "o"},
-    accuracy.SECOND: {"color": "#0072b2", "marker": "o"},
+    accuracy.SECOND: {"color": "#009e73", "marker": "o"},
+    accuracy.DEFAULT: {"color": "#0072b2", "marker": "o"},
 }
 PATHS = {1: "#009e73", 3: "#222222"}
 
@@ -124,7 +125,7 @@ def error_panel(results):
 def _paths(stage, results, reach, width):
     """The paths of test cases 1 and 3 with the defaults of the fix, as far as ``reach``."""
     for case, color in PATHS.items():
-        path = results.get(case, ACCURATE, "second").center
+        path = results.get(case, ACCURATE, "momentum").center
         near = (np.abs(path) < reach).all(axis=1).cumprod().astype(bool)
         stage.lines(path[near], color, width, 1 + len(path[near]) // 4)
 
@@ -155,7 +156,7 @@ def draw_overview(path, results, until=1000.0):
         add_cage(whole)
         _paths(whole, results, 230.0, 0.8)
         whole.draw(cage, 205.0, 165.0)
-        _add_inset(cage, whole, results.get(1, ACCURATE, "second").until(until))
+        _add_inset(cage, whole, results.get(1, ACCURATE, "momentum").until(until))
         draw_panel(errors, error_panel(results))
         errors.legend(fontsize=7.5, loc="lower right")
         figure.supxlabel(RECONSTRUCTED, x=0.995, ha="right", fontsize=7, color="#666666")

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from benchmarks.engine import Job, deck, series
 
+#: those of the paper
 FORMULATIONS = ("first", "second")
 
 
@@ -33,7 +34,7 @@ ROWS = {
         ("consistent-accurate", "consistent", "accurate start, projected", {}),
     )
 }
-#: rows with the paper's choices, and the row with the defaults of the fix
+#: rows with the paper's choices, and the row with the default choices of the fix
 AS_PRINTED, ACCURATE = ("consistent-zero-free", "unrotated-zero-free"), "consistent-accurate"
 
 STEP = {1: 0.001, 2: 0.125, 3: 0.005}  # of Table 7
@@ -61,7 +62,7 @@ def name_of(case, row, formulation, dt, omega=""):
 
 @dataclass(frozen=True)
 class Run:
-    """One run: a case, a row, a formulation (or "rigid", fix rigid/nve/small), a step, its end."""
+    """One run: a case, a row, a formulation ("rigid": fix rigid/nve/small), a step, its end."""
 
     case: int
     row: str
@@ -83,14 +84,14 @@ class Run:
         variables |= {"steps": steps, "every": round(1.0 / self.dt)} | ROWS[self.row].variables
         if self.omega:
             # one pass as in the paper: a second pass would use the corrected omega in any case
-            variables |= {"omega": self.omega, "values": 5, "passes": 1, "corrector": "gear"}
+            variables |= {"omega": self.omega, "values": 5, "passes": 1}
         return Job(deck(f"case{self.case}"), variables, steps)
 
 
 def planned_runs(step, full=False):
     """All runs for the tables and the figures; ``step``: case -> its step."""
-    rigid, runs = (ACCURATE, "rigid"), []
-    every = [*itertools.product(ROWS, FORMULATIONS), rigid]
+    others, runs = [(ACCURATE, "momentum"), (ACCURATE, "rigid")], []
+    every = [*itertools.product(ROWS, FORMULATIONS), *others]
     both = list(itertools.product(AS_PRINTED, FORMULATIONS))
     for case, dt in step.items():
         runs += [Run(case, *method, dt) for method in every]
@@ -98,7 +99,7 @@ def planned_runs(step, full=False):
         runs += [Run(case, *method, step[case] * part, end) for method in both]
     for omega in ("corrected", "predicted"):
         runs.append(Run(1, ACCURATE, "first", OMEGA_STEP, OMEGA_END, omega))
-    compared = [*itertools.product((AS_PRINTED[0], ACCURATE), FORMULATIONS), rigid]
+    compared = [*itertools.product((AS_PRINTED[0], ACCURATE), FORMULATIONS), *others]
     for dt in (*ACCURACY_STEPS, *COARSE_STEPS):
         end = END if dt in COARSE_STEPS else ACCURACY_END
         runs += [Run(1, *method, dt, end) for method in compared]

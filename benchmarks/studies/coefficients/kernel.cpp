@@ -5,40 +5,34 @@
 #include "drive.h"
 #include "gear_quat_limits.h"
 #include "oracles/cage_scene.h"
-#include "oracles/swinging_top.h"
 
 #include <random>
 
 using namespace Drive;
 using Oracle::CageScene;
-using Oracle::TOP;
 
 namespace {
 
 constexpr double LOST = 1e3;
 
-/// Coefficients c_0 ... c_(values-1) of rows that forces drive, and of those that integrate these, which
-/// only the first formulation has.  any_norm: without a projection.
+/// Coefficients c_0 ... c_(values-1) of formulation momentum.
 struct Corrector {
-  int second, values, passes, compensate, any_norm;
-  double sets[2][MAX_VALUES];
+  int values, compensate;
+  double c[MAX_VALUES];
 };
 
 Scheme scheme_for(const Corrector &corrector)
 {
-  Scheme scheme = scheme_of(corrector.second ? SECOND : FIRST, corrector.values, corrector.passes,
-                            corrector.compensate);
-  scheme.tuned = corrector.any_norm;
-  scheme.projection = corrector.any_norm ? Projection::AUTO : Projection::YES;
+  Scheme scheme = scheme_of(MOMENTUM, corrector.values, 1, corrector.compensate);
+  scheme.tuned = false;
   return scheme;
 }
 
 CorrectorCoefficients coefficients_of(const Corrector &corrector)
 {
-  CorrectorCoefficients c(scheme_for(corrector));
-  std::copy_n(corrector.sets[0], corrector.values, c.driven.begin());
-  std::copy_n(corrector.sets[1], corrector.values, c.integrated.begin());
-  return c;
+  CorrectorCoefficients coefficients(scheme_for(corrector));
+  std::copy_n(corrector.c, corrector.values, coefficients.c.begin());
+  return coefficients;
 }
 
 /// spacing: the longest of the nodes of the start.
@@ -127,20 +121,6 @@ double libration(const Corrector *corrector, double h, int steps, const double *
   }
 }
 
-/// Relative change of the energy of the free top.
-double free_top(const Corrector *corrector, double h, double time)
-{
-  static const BodyState start = Oracle::top_state(0.0);
-  try {
-    Motion motion = motion_of(*corrector, TOP, start, free_of_load, h, 0.1);
-    const double energy = rotational_energy(TOP, start.omega_body);
-    motion.run(time);
-    return bounded(rotational_energy(TOP, motion.state().omega_body) / energy - 1.0);
-  } catch (const std::runtime_error &) {
-    return LOST;
-  }
-}
-
 /// The center of mass (center[3]) of the body of test case 1 in its cage.  seed: of another start, 0
 /// for the paper's own.
 void cage(const Corrector *corrector, double h, int seed, double time, double *center)
@@ -174,12 +154,11 @@ double noise(const Corrector *corrector)
   return noise_gain(scheme_for(*corrector), coefficients_of(*corrector));
 }
 
-/// The tail of a tuned set, and its c_0 (NaN if it is solved for).  which: 0 or 1, as in Corrector.
-/// Returns the length of the tail, 0 if there is no such set.
-int tuned_tail(int second, int values, int which, int any_norm, double *tail, double *c0)
+/// The tail of the tuned set, and its c_0 (NaN if it is solved for).  Returns the length of the tail, 0
+/// if there is no set for this number of values.
+int tuned_tail(int values, double *tail, double *c0)
 {
-  const Columns kind = which && !second ? Columns::INTEGRATED : Columns::DRIVEN;
-  const TunedSet *set = tuned_set(second ? SECOND : FIRST, values, kind, any_norm);
+  const TunedSet *set = tuned_set(values);
   if (!set) return 0;
   std::copy(set->tail.begin(), set->tail.end(), tail);
   *c0 = double(set->c0);

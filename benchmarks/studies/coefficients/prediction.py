@@ -2,14 +2,13 @@
 
 For a coordinate that oscillates with omega, the force is evaluated at the predicted value, which is H(omega h)
 times the true one.  H follows from the coefficients c: predict, then correct row j by c_j times the
-residual, in one pass.  The imaginary part of H does work, so the energy of the oscillation, kT in equilibrium, changes
+residual.  The imaginary part of H does work, so the energy of the oscillation, kT in equilibrium, changes
 at the relative rate -omega Im H.  Averaged over the normalized power spectrum rho of velocities (for rotation, of
 angular velocities in the body frame), the drift per degree of freedom is
 
     -sum over omega of rho(omega) omega Im H(omega h) kT.
 
-No quantity is fitted.  The theory is linear: it does not include instability, projections, passes, and forces that are
-not smooth.
+No quantity is fitted.  The theory is linear: it does not include instability, and forces that are not smooth.
 """
 
 import csv
@@ -28,10 +27,10 @@ SEGMENT, WINDOW = 1024, "blackmanharris"
 AT_REST = 1e-9
 
 
-def open_loop(c, order):
+def open_loop(c):
     """Step (N, N) of rows whose right side is zero."""
     predict = pascal(len(c), "upper").astype(float)
-    return predict - np.outer(c, predict[order])
+    return predict - np.outer(c, predict[2])
 
 
 def response(corrector, omega_h):
@@ -39,17 +38,10 @@ def response(corrector, omega_h):
 
     An oscillation has the root exp(i y) with y^2 = (omega h)^2 H(y).
     """
-    y, q, (one, other) = np.asarray(omega_h), corrector.order, corrector.floats
-    roots = np.exp(1j * y)[:, None]
-
-    def histories(c):
-        free = roots[..., None] * np.eye(len(c)) - open_loop(c, q)
-        return np.linalg.solve(free, c[:, None])[..., 0]
-
-    rows = histories(one) * roots / q
-    if q == 1:
-        rows = histories(other) * roots * rows[:, :1]
-    return -(y**2) * (rows / roots).sum(axis=1)  # a prediction is the sum of all rows
+    y, c = np.asarray(omega_h), corrector.floats
+    free = np.exp(1j * y)[:, None, None] * np.eye(len(c)) - open_loop(c)
+    rows = np.linalg.solve(free, c[:, None])[..., 0]
+    return -(y**2) / 2 * rows.sum(axis=1)  # a prediction is the sum of all rows
 
 
 @dataclass(frozen=True)

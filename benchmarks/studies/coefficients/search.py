@@ -1,11 +1,11 @@
 """The search for tuned coefficients: differential evolution over spurious roots, then Nelder-Mead.
 
 Parameters are the spurious roots without forces, inside the circle of radius INNER.  All other coefficients follow from
-the order conditions, except c_0 in the second formulation with an odd number of values: c_0 is chosen such that an
-oscillation keeps its energy.
+the order conditions, except c_0 for an odd number of values: c_0 is chosen such that an oscillation at half of the reach
+keeps its energy.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -19,23 +19,16 @@ from .kernel import LOST, VALUES, Corrector
 INNER, OUTER, MARGIN = 0.94, 0.955, 0.1
 #: largest distance of a free c_0 from the value of highest order
 C0_RANGE, C0_TRIED, SECANTS = 0.2, (-0.06, -0.1), 4
-#: number of values -> (omega h, amplitude in radians) of the libration that keeps its energy, for long steps.
-#: With other numbers, a harmonic oscillation keeps its energy at half of the reach.
-LONG_STEPS = {7: (0.5, 0.2)}
 #: weight of the phase error relative to damping
 PHASE = 0.05
-#: formulation -> number of values -> largest omega h of the search
-REACH = {
-    "second": dict(zip(VALUES["second"], (0.9, 0.8, 0.7, 0.6, 0.55, 0.42, 0.45, 0.4, 0.36))),
-    "first": dict(zip(VALUES["first"], (0.8, 0.7, 0.6, 0.5, 0.45, 0.38))),
-}
+#: number of values -> largest omega h of the search; five values are for long steps
+REACH = dict(zip(VALUES, (0.9, 0.96, 0.7, 0.6, 0.55, 0.42, 0.45, 0.4, 0.36)))
 #: largest noise gain, and the fraction of a momentum that friction removes in a step
 NOISE, FRICTION = 8.0, 0.05
 #: omega h with this friction: almost a free body, and an oscillation
 DAMPED = (0.02, 0.2)
-#: omega h relative to the reach, for the librations and for the free top
+#: omega h of the librations relative to the reach
 LIBRATIONS = np.array([0.2, 0.35, 0.5, 0.65, 0.8, 0.9])
-TOPS = 1.2 * np.array([0.12, 0.25, 0.4, 0.6, 0.8])
 #: (factor of the step, frequencies, amplitude in radians) of the librations
 WELLS = ((1.0, (1.0, 0.8, 0.6), 0.3), (1.03, (0.9, 1.0, 0.5), 0.2))
 
@@ -53,42 +46,32 @@ def spectrum(corrector, omega_h):
 
 @dataclass(frozen=True)
 class Search:
-    """A search for coefficients with N ``values`` of a ``formulation``."""
+    """A search for coefficients with N ``values``."""
 
-    formulation: str
     values: int
 
     @property
-    def order(self):
-        """Order of the equations."""
-        return 2 if self.formulation == "second" else 1
-
-    @property
     def free_c0(self):
-        """True if c_0 is a parameter, because the order conditions leave it free."""
-        return self.order == 2 and self.values % 2 == 1
+        """True if the order conditions leave c_0 free."""
+        return self.values % 2 == 1
 
     @property
     def reach(self):
         """Largest omega h of the search."""
-        return REACH[self.formulation][self.values]
+        return REACH[self.values]
 
     @property
     def bounds(self):
         """(low, high) of each parameter: moduli and angles (in pi) of pairs, a real root."""
-        count = self.values - self.order - 1
-        one = [(0, INNER), (0, 1)] * (count // 2) + [(-INNER, INNER)] * (count % 2)
-        return one * (3 - self.order)
+        count = self.values - 3
+        return [(0, INNER), (0, 1)] * (count // 2) + [(-INNER, INNER)] * (count % 2)
 
     def placed(self, x):
         """Corrector of full order with the spurious roots ``x``."""
-        count, sets = self.values - self.order - 1, []
-        for part in np.reshape(x, (3 - self.order, count)):
-            pairs = part[: count - count % 2].reshape(-1, 2)
-            roots = pairs[:, 0] * np.exp(1j * np.pi * pairs[:, 1])
-            roots = np.concatenate([roots, roots.conj(), part[len(part) - count % 2 :]])
-            sets.append(tuple(completed(self.order, [1.0, *placed(self.order, roots)[1:]])))
-        return Corrector(self.formulation, (sets[0], sets[-1]))
+        pairs = x[: len(x) - len(x) % 2].reshape(-1, 2)
+        roots = pairs[:, 0] * np.exp(1j * np.pi * pairs[:, 1])
+        roots = np.concatenate([roots, roots.conj(), x[len(x) - len(x) % 2 :]])
+        return Corrector(tuple(completed([1.0, *placed(roots)[1:]])))
 
     def corrector(self, x):
         """Corrector of the parameters ``x``."""
@@ -99,10 +82,7 @@ class Search:
         """The Corrector with the c_0 for which an oscillation keeps its energy."""
 
         def gain(by):
-            if self.values not in LONG_STEPS:
-                return spectrum(corrector.moved(by), [self.reach / 2])[0, 0]
-            z, amplitude = LONG_STEPS[self.values]
-            return corrector.moved(by).libration(z, WELLS[0][1], amplitude, 1000)
+            return spectrum(corrector.moved(by), [self.reach / 2])[0, 0]
 
         last, by = C0_TRIED
         before, now = gain(last), gain(by)
@@ -116,12 +96,10 @@ class Search:
 
     def written(self, corrector):
         """The Corrector with rounded decimals; c_0 and c_1 are recomputed exactly from the other coefficients."""
-        sets = []
-        for c in corrector.sets:
-            exact = completed(self.order, decimals(c[self.order :]))
-            exact[0] = decimals(c[:1])[0] if self.free_c0 else exact[0]
-            sets.append(tuple(exact))
-        return replace(corrector, sets=tuple(sets))
+        c = completed(decimals(corrector.c[2:]))
+        if self.free_c0:
+            c[:1] = decimals(corrector.c[:1])
+        return Corrector(tuple(c))
 
     @cached_property
     def _grids(self):
@@ -138,7 +116,6 @@ class Search:
     def librations(self, corrector):
         """log10 of the energy changes of librations, relative to a typical change at each step."""
         usual = 10.0 ** (1 - self.values) * (LIBRATIONS * self.reach / 0.1) ** (self.values + 1)
-        usual *= 30 if self.order == 1 else 1
         changes = [
             np.mean(
                 [
@@ -148,18 +125,8 @@ class Search:
             )
             for z in LIBRATIONS * self.reach
         ]
-        return _levels(1.7 * np.array(changes), usual)
-
-    def tops(self, corrector):
-        """The same for the free top."""
-        usual = 10.0 ** (1 - self.values) * (TOPS * self.reach / 0.12) ** self.values
-        usual *= 3 if self.order == 1 else 1
-        times = np.where(TOPS * self.reach > 0.12, 150.0, 60.0)
-        changes = [
-            abs(corrector.free_top(z / 1.24, time)) * 180.0 / time
-            for z, time in zip(TOPS * self.reach, times)
-        ]
-        return _levels(np.array(changes), usual)
+        levels = np.log10(np.maximum(1.7 * np.array(changes), 1e-14) / usual)
+        return np.clip(levels, -2.5, 4.0)
 
     def disturbances(self, corrector):
         """log2 of the noise gain over NOISE; excess of the largest root with FRICTION over 1."""
@@ -174,9 +141,8 @@ class Search:
             return 20.0 + 50.0 * (root - OUTER)
         noise, friction = self.disturbances(corrector)
         error += 0.5 * noise + 60.0 * friction
-        librations, tops = self.librations(corrector), self.tops(corrector)
-        motions = 0.5 * librations.mean() + 0.25 * tops.mean()
-        motions += 0.1 * librations.max() + 0.05 * tops.max()
+        librations = self.librations(corrector)
+        motions = 0.5 * librations.mean() + 0.1 * librations.max()
         return error + motions + 50.0 * max(0.0, root - OUTER)
 
     def run(self, seed=1, iterations=60):
@@ -184,7 +150,7 @@ class Search:
 
         def of(x):
             corrector = self.corrector(x)
-            return self.cost(corrector) if np.all(np.isfinite(corrector.sets)) else LOST
+            return self.cost(corrector) if np.all(np.isfinite(corrector.c)) else LOST
 
         options = {"maxiter": iterations, "popsize": 7, "seed": seed, "polish": False, "tol": 1e-9}
         rough = differential_evolution(of, self.bounds, **options).x
@@ -192,7 +158,3 @@ class Search:
         best = minimize(of, rough, method="Nelder-Mead", bounds=self.bounds, options=most).x
         corrector = self.written(self.corrector(best))
         return corrector, self.cost(corrector)
-
-
-def _levels(changes, usual):
-    return np.clip(np.log10(np.maximum(changes, 1e-14) / usual), -2.5, 4.0)

@@ -1,24 +1,21 @@
-"""The search for coefficients without a projection: the least drift in liquids.
+"""The search for five values, which are for long steps: the least drift in liquids.
 
 Parameters are the spurious roots without forces, with a modulus of at most INNER, and c_0.  The search minimizes
 the drift that prediction.py computes from recorded spectra of liquids.  The drift alone would favor roots with which
 noise, motion with friction or fast vibrations grow, so these are constraints.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from . import prediction
+from .kernel import Corrector
 from .search import DAMPED, FRICTION, Search, spectrum
 
-#: numbers of values in the kernel and the search without a projection
-VALUES = (5,)
 #: largest modulus of a root without forces, and largest noise gain
 INNER, NOISE = 0.98, 5.0
-#: oscillations are stable up to this number of radians per step
-REACH = 0.96
 #: step in fs -> typical drift, kT/ns/dof; drifts are divided by it before they are compared
 USUAL = {2.5: 0.01, 3.0: 0.015, 4.0: 0.5}
 #: largest c_0
@@ -29,25 +26,18 @@ WEIGHT = 100.0
 
 @dataclass(frozen=True)
 class SpectralSearch(Search):
-    """A search for coefficients with N ``values``, an odd number, in the second formulation."""
+    """A search in which oscillations must be stable up to the reach."""
 
-    formulation: str = "second"
     values: int = 5
 
     @property
-    def reach(self):
-        """Largest omega h of the search."""
-        return REACH
-
-    @property
     def bounds(self):
-        """(low, high) of each parameter: moduli and angles (in pi) of pairs, and c_0."""
-        return [(0, INNER), (0, 1)] * ((self.values - 3) // 2) + [(0, MOST_C0)]
+        """(low, high) of each parameter: modulus and angle (in pi) of the pair of roots, and c_0."""
+        return [(0, INNER), (0, 1), (0, MOST_C0)]
 
     def corrector(self, x):
         """Corrector of the parameters ``x``."""
-        placed = replace(self.placed(x[:-1]), passes=0, any_norm=True)
-        return placed.moved(x[-1] - placed.sets[0][0])
+        return Corrector((x[-1], *self.placed(x[:-1]).c[1:]))
 
     @cached_property
     def _spectra(self):

@@ -30,7 +30,7 @@ SIGNIFICANT = 4.0
 SPOILS = 0.1
 
 DEFAULT, DEFAULT_COMPENSATED = (
-    gear("second", DEFAULT_VALUES["second"], compensate) for compensate in (False, True)
+    gear("momentum", DEFAULT_VALUES["momentum"], compensate) for compensate in (False, True)
 )
 NO_SQUISH, VERLET = rigid("rigid/nve/small", "rigid"), rigid("rigid/small", "rigid_verlet")
 METHODS = {
@@ -38,11 +38,11 @@ METHODS = {
     for method in (
         gear("first", 5),
         gear("first", 6),
-        gear("first", 8),
         gear("second", 6),
+        gear("second", 8),
+        gear("momentum", 5),
         DEFAULT,
         DEFAULT_COMPENSATED,
-        gear("second", 10),
         NO_SQUISH,
         rigid("rigid/nve", "rigid_big"),
         VERLET,

@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from benchmarks.engine import Job, Measurement, Table, deck
-from benchmarks.engine.methods import DEFAULTS, GEARS, rigid
+from benchmarks.engine.methods import DEFAULTS, rigid
 from benchmarks.reference import paper_problem, solvers, splittings
 
 #: end of the runs, and time per evaluation
@@ -19,7 +19,6 @@ END, QUICK_END, SPACINGS = 5000.0, 50.0, (0.25, 0.125, 0.0625, 0.03125)
 TOLERANCES = tuple(10.0**-k for k in range(4, 13))
 METHODS = (
     *DEFAULTS.values(),
-    *GEARS.values(),
     rigid("rigid/nve/small", "rigid"),
     rigid("rigid/small", "rigid_verlet"),
 )

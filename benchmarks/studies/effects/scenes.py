@@ -47,7 +47,7 @@ _FORCES = {
 
 @dataclass(frozen=True)
 class Scene:
-    """One scene, with two passes and a given number of values, so that instructions do not depend on the motion.
+    """One scene, with a given number of values, so that instructions do not depend on the motion.
 
     ``words``: keywords of the fix; ``before``, ``after``: lines around it;
     ``columns``: columns of the output besides the step; ``each``: output in every step, not only at the end;
@@ -67,10 +67,10 @@ class Scene:
 
     def deck(self, side, steps):
         """Script with side^3 bodies; its first run has the start, its second run ``steps`` steps."""
-        values = DEFAULT_VALUES["first" if "formulation first" in self.words else "second"]
+        values = DEFAULT_VALUES["first" if "formulation first" in self.words else "momentum"]
         return _DECK.format(
             scene=self,
-            method="passes 2" if "values" in self.words else f"passes 2 values {values}",
+            method="" if "values" in self.words else f"values {values}",
             spacing=SPACING,
             side=side,
             origin=0.0 if self.crossing else 0.4,

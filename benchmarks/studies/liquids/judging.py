@@ -40,7 +40,7 @@ def drift_of(results, scene, method, dt):
 
 def predicted(results, scene, values, dt):
     """Drift predicted from the spectrum of a liquid, for a number of values."""
-    return results.spectra[scene.liquid.key].drift(tuned("second", values, any_norm=True), dt)
+    return results.spectra[scene.liquid.key].drift(tuned(values), dt)
 
 
 def drifts(results):

@@ -12,7 +12,7 @@ from benchmarks.engine.methods import AUTOMATIC, gear, rigid
 NVE_SMALL = rigid("rigid/nve/small", "rigid")
 DEFAULT = AUTOMATIC
 #: number of values -> the method with this keyword
-VALUES = {n: gear("second", n) for n in (5, 7, 9)}
+VALUES = {n: gear("momentum", n) for n in (5, 7, 9)}
 #: names on the page
 NAMES = {
     DEFAULT: "`fix gear/quat`",

@@ -3,7 +3,6 @@
 runs.py (runs and their logs), quantities.py (results from runs), and here the measurements, tables and panels.
 """
 
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -13,7 +12,7 @@ from benchmarks.engine.statistics import allowed
 from benchmarks.engine.study import Finding, Measurement, Study, Table
 
 from . import quantities as of
-from .runs import COMPARED, FROZEN, GEAR, MOLECULES, NVE_SMALL, RACE, SAMPLED, SMALL, TIMED
+from .runs import COMPARED, FROZEN, MOLECULES, NVE_SMALL, OURS, RACE, SMALL, TIMED
 from .runs import bodies_of, measure
 
 #: bounds: time in the fix and memory, relative to fix rigid/nve/small; deviation from linear growth
@@ -23,8 +22,7 @@ ROUNDING = 1e-9
 OVER = f"relative to {NVE_SMALL.label}"
 #: method -> color, marker
 LOOKS = {
-    GEAR[0]: ("second", "o"),
-    GEAR[1]: ("first", "s"),
+    OURS: ("momentum", "o"),
     NVE_SMALL: ("rigid", "D"),
     SMALL: ("translation", "^"),
 }
@@ -36,29 +34,29 @@ def ranks_text(ranks):
 
 
 # --- measurements ---------------------------------------------------------------------------------
-def timing_measurements(results, method):
+def timing_measurements(results):
     """Time in the fix, growth and memory."""
-    plan, ratios = results.plan, of.memory_ratios(results, method)
+    plan, ratios = results.plan, of.memory_ratios(results, OURS)
     for ranks in plan.ranks:
-        ratio, least, largest = of.time_ratio(results, method, ranks)
+        ratio, least, largest = of.time_ratio(results, OURS, ranks)
         what = f"{bodies_of(plan.headline)} molecules, {ranks_text(ranks)}: time in the fix {OVER}"
         remark = f"{least:.2f} to {largest:.2f} in {plan.rounds} rounds"
         yield Measurement(what, ratio, spec=".2f", remark=remark, most=MOST_TIME)
     what, remark = f"largest memory of a body {OVER}, all sizes", f"least: {min(ratios):.2f}"
     yield Measurement(what, max(ratios), spec=".2f", remark=remark, most=MOST_MEMORY)
     what = f"{', '.join(map(str, plan.sizes))} bodies: deviation from linear scaling"
-    value = of.nonlinearity(results, method)
+    value = of.nonlinearity(results, OURS)
     yield Measurement(what, value, spec=".0%", most=MOST_GROWTH)
 
 
-def pressure_measurements(results, method):
+def pressure_measurements(results):
     """The mean pressure does not depend on the step; the pressure of one configuration tests this more precisely."""
     dts, interval = results.plan.pressure_dts, results.plan.interval
     steps = f"steps of {', '.join(f'{dt:g}' for dt in dts)} fs"
-    value = of.largest_deviation(of.mean_pressures(results, method).values())
+    value = of.largest_deviation(of.mean_pressures(results, OURS).values())
     what = f"{steps}: largest deviation of a mean pressure, in standard errors"
     yield Measurement(what, value, spec=".1f", most=allowed(len(dts), of.BLOCKS - 1))
-    instants = of.instants(results, method)
+    instants = of.instants(results, OURS)
     start, after = np.ptp(instants, axis=0)
     most = ROUNDING * np.abs(instants[:, 0]).max()
     what = f"{steps}: largest difference of the pressures at the start"
@@ -69,16 +67,16 @@ def pressure_measurements(results, method):
     yield Measurement(what, after, spec=".2g", unit="atm", remark=remark, most=theirs)
 
 
-def temperature_measurements(results, method):
+def temperature_measurements(results):
     """Degrees of freedom, equipartition, and the mean temperature at the same energy."""
-    thermo = results.temperatures[method.key]
+    thermo = results.temperatures[OURS.key]
     parts = of.partition(thermo).values()
     value, most = of.largest_deviation(parts, 0.0), allowed(len(parts), of.BLOCKS - 1)
     what = "largest deviation from equipartition, in standard errors"
     yield Measurement(what, value, spec=".1f", most=most)
     what = "relative difference of compute temp and 6N - 3 degrees of freedom"
     yield Measurement(what, of.kinetic_mismatch(thermo), spec=".0e", most=ROUNDING)
-    off = of.warmer(results, method)
+    off = of.warmer(results, OURS)
     most = allowed(1, off.freedoms) * off.error
     what = f"difference of the mean temperature from {NVE_SMALL.label}"
     yield Measurement(what, off.value, off.error, ".1f", "K", least=-most, most=most)
@@ -86,12 +84,7 @@ def temperature_measurements(results, method):
 
 def measurements_of(results):
     """All measurements, in the order of the page."""
-    return [
-        replace(measurement, what=f"{method.label}, {measurement.what}")
-        for part in (timing_measurements, pressure_measurements, temperature_measurements)
-        for method in GEAR
-        for measurement in part(results, method)
-    ]
+    return [*timing_measurements(results), *pressure_measurements(results), *temperature_measurements(results)]
 
 
 # --- tables ---------------------------------------------------------------------------------------
@@ -123,14 +116,13 @@ def time_table(results):
 def start_table(results):
     """Cost of the start of fix gear/quat."""
     rows, cells = [], results.plan.headline
-    for method in GEAR:
-        for ranks in results.plan.ranks:
-            timings = results.timings[method.key, cells, ranks]
-            seconds = [t.seconds for t in timings]
-            steps = np.median(seconds) / np.median(results.step_seconds(method, cells, ranks))
-            counts = " or ".join(map(str, sorted({t.evaluations for t in timings})))
-            rows.append([method.label, ranks, counts, ranged(seconds), f"{steps:.0f}"])
-    return Table(("start", "ranks", "force evaluations", "seconds", "equivalent steps"), rows)
+    for ranks in results.plan.ranks:
+        timings = results.timings[OURS.key, cells, ranks]
+        seconds = [t.seconds for t in timings]
+        steps = np.median(seconds) / np.median(results.step_seconds(OURS, cells, ranks))
+        counts = " or ".join(map(str, sorted({t.evaluations for t in timings})))
+        rows.append([ranks, counts, ranged(seconds), f"{steps:.0f}"])
+    return Table(("ranks", "force evaluations of the start", "seconds", "equivalent steps"), rows)
 
 
 def size_tables(results):
@@ -175,7 +167,7 @@ def temperature_table(results):
     """Mean temperatures with errors, of all and of each part."""
     names = ["all", "translation", "rotation", *(f"axis {name}" for name in of.AXES)]
     rows = []
-    for method in SAMPLED:
+    for method in RACE:
         series = of.temperatures(results.temperatures[method.key])
         cells = [shown(of.block_mean(series[n])) if n in series else "–" for n in names]
         rows.append([method.label, *cells])
@@ -220,8 +212,8 @@ def _size_panels(results):
 
 def _sample_panels(results):
     """Pressure against the step, averaged and of one configuration; temperature of the parts."""
-    plan, shifts, instants, parts = results.plan, [], [], []
-    dts, known = plan.pressure_dts, of.instants(results, GEAR[0])[0, 1]
+    plan, shifts, instants = results.plan, [], []
+    dts, known = plan.pressure_dts, of.instants(results, OURS)[0, 1]
     for method in COMPARED:
         means = of.pressure_shifts(results, method)
         values, errors = np.transpose([(abs(mean.value), mean.error) for mean in means.values()])
@@ -230,20 +222,18 @@ def _sample_panels(results):
         off = np.abs(of.instants(results, method)[:, 1] - known)
         seen = off > ROUNDING * abs(known)
         instants.append(_curve(method, np.array(dts)[seen], off[seen]))
-    for k, method in enumerate(GEAR):
-        means = of.partition(results.temperatures[method.key])
-        values, errors = np.transpose([(mean.value, mean.error) for mean in means.values()])
-        at = np.arange(len(means)) + 0.16 * (k - 0.5)
-        parts.append(_curve(method, at, values, errors, line=""))
+    means = of.partition(results.temperatures[OURS.key])
+    values, errors = np.transpose([(mean.value, mean.error) for mean in means.values()])
+    part = _curve(OURS, np.arange(len(means)), values, errors, line="")
     zero = Curve("", np.array([-0.4, len(means) - 0.6]), np.zeros(2), "#222222")
     names = tuple(n.removeprefix("axis ").replace(" the ", "\nthe ") for n in means)
     by_step = {"log": "xy", "xticks": dts, "legend": False}
     shift = f"Mean pressure: difference from step {dts[0]:g} fs"
-    after = f"Pressure after {plan.interval:g} fs: difference from second, step {dts[0]:g} fs"
+    after = f"Pressure after {plan.interval:g} fs: difference from {OURS.label}, step {dts[0]:g} fs"
     return (
         Panel(shift, "step, fs", "atm", shifts, **(by_step | {"xticks": dts[1:]})),
         Panel(after, "step, fs", "atm", instants, **by_step),
-        Panel("Temperature minus overall temperature", "", "K", (zero, *parts), "", names, legend=False),
+        Panel("Temperature minus overall temperature", "", "K", (zero, part), "", names, legend=False),
     )
 
 

@@ -24,15 +24,11 @@ def _method(key, label, style, kind):
     return Method(key, label, {"motion": style and f"fix move all {style}"}, kind)
 
 
-SECOND = _method("second", "fix gear/quat, second formulation", "gear/quat molecule", "second")
-_FIRST = "gear/quat molecule formulation first"
-FIRST = _method("first", "fix gear/quat, first formulation", _FIRST, "first")
+OURS = _method("gear-quat", "fix gear/quat", "gear/quat molecule", "momentum")
 NVE_SMALL = _method("rigid-nve-small", "fix rigid/nve/small", "rigid/nve/small molecule", "rigid")
 SMALL = _method("rigid-small", "fix rigid/small", "rigid/small molecule", "rigid")
 FROZEN = _method("frozen", "no fix", "", "rigid")
-GEAR = (SECOND, FIRST)
-RACE, TIMED = (*GEAR, NVE_SMALL), (*GEAR, NVE_SMALL, FROZEN)
-SAMPLED, COMPARED = (*GEAR, NVE_SMALL), (*GEAR, NVE_SMALL, SMALL)
+RACE, TIMED, COMPARED = (OURS, NVE_SMALL), (OURS, NVE_SMALL, FROZEN), (OURS, NVE_SMALL, SMALL)
 
 
 def bodies_of(cells):
@@ -213,7 +209,7 @@ def _sampling(method, dt, time, interval, columns):
 def sample_all(lab, plan):
     """``pressures`` and ``temperatures`` of Results."""
     times = plan.temperature_dt, plan.temperature_time, plan.temperature_interval
-    jobs = {f"temperature_{m.key}": _sampling(m, *times, KINETIC[m.gear]) for m in SAMPLED}
+    jobs = {f"temperature_{m.key}": _sampling(m, *times, KINETIC[m.gear]) for m in RACE}
     keys = {}
     for dt, method in itertools.product(plan.pressure_dts, COMPARED):
         name = f"pressure_{method.key}_dt{dt:g}"
@@ -221,7 +217,7 @@ def sample_all(lab, plan):
         jobs[name] = _sampling(method, dt, plan.pressure_time, plan.interval, "temp press")
     runs = lab.many(jobs)
     pressures = {key: runs[name].thermo["Press"] for name, key in keys.items()}
-    return pressures, {m.key: runs[f"temperature_{m.key}"].thermo for m in SAMPLED}
+    return pressures, {m.key: runs[f"temperature_{m.key}"].thermo for m in RACE}
 
 
 def measure(lab, plan=None):

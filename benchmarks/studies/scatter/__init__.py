@@ -34,7 +34,7 @@ COMPARED = (1e-7, 1e-9)
 VISCOSITY, CHOLINE = (17.877, 0.09), {"helium": (55.402, 0.510), "nitrogen": (115.92, 1.27)}
 PAIRS = {"nitrogen": "two nitrogen molecules", "helium": "choline, helium", "ion": "choline, nitrogen"}
 LOOKS = {
-    "fix gear/quat": ("second", "o"),
+    "fix gear/quat": ("momentum", "o"),
     "fix rigid/nve/small": ("rigid", "D"),
     "DOP853": ("total", "^"),
     "LSODA": ("rotation", "v"),

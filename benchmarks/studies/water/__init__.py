@@ -169,7 +169,7 @@ def panels(found):
     shown = []
     for quantity in (WARMER, DENSITY):
         curves = []
-        for method, color in ((OURS, "second"), (SHAKE, "rigid")):
+        for method, color in ((OURS, "momentum"), (SHAKE, "rigid")):
             of_method = sorted((s for s in at_atmosphere(found, "tip4p") if s.method == method), key=lambda s: s.dt)
             values, errors = np.array([quantity.of(found[series]) for series in of_method]).T
             steps = np.array([series.dt for series in of_method])
