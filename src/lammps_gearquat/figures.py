@@ -12,7 +12,7 @@ from .trials import NORMS
 
 OWN = "#666666"
 FAINT = "#888888"
-FORMULATION = {"second": "Blues", "first": "Oranges"}
+FORMULATION = {"momentum": "Blues", "second": "Greens", "first": "Oranges"}
 #: with more decades than this on an axis, powers of ten are sufficient as ticks
 FEW_DECADES = 2.5
 
@@ -30,15 +30,20 @@ def _ticks(axis):
 def _rank(keywords):
     """Sorts methods by formulation and number of values; the fix of the deck comes first."""
     numbers = [int(word) for word in (keywords or "").split() if word.isdigit()]
-    return (keywords is not None, "formulation first" in (keywords or ""), numbers)
+    return (keywords is not None, _family(keywords or ""), numbers)
+
+
+def _family(keywords):
+    """The formulation of a method."""
+    return next((name for name in FORMULATION if f"formulation {name}" in keywords), "momentum")
 
 
 def _look(keywords, methods):
     """Color and label of a method: darker for more values."""
     if keywords is None:
         return {"color": OWN, "marker": "s", "label": "the deck's own fix", "zorder": 3}
-    family = next((name for name in FORMULATION if f"formulation {name}" in keywords), "second")
-    kin = [method for method in methods if method and f"formulation {family}" in method]
+    family = _family(keywords)
+    kin = [method for method in methods if method and _family(method) == family]
     kin.sort(key=_rank)
     place = kin.index(keywords) / max(len(kin) - 1, 1) if keywords in kin else 0.5
     color = matplotlib.colormaps[FORMULATION[family]](0.35 + 0.6 * place)
@@ -179,7 +184,7 @@ def draw_convergence(path, name, shown):
 
     ``shown``: words for a condition -> what ``results.convergence`` returns, of one or two conditions.
     """
-    colors, lines = (COLOR["second"], COLOR["first"]), ("-", ":")
+    colors, lines = (COLOR["momentum"], COLOR["first"]), ("-", ":")
     with picture(path, f"Convergence: {name}", ncols=2, figsize=(10, 4)) as (_, (left, right)):
         for (words, (numbers, series)), line in zip(shown.items(), lines):
             for (label, (values, errors)), color in zip(series.items(), colors):

@@ -42,10 +42,10 @@ class Keyword:
         """The values of a keyword that takes one of some words."""
         return tuple(re.split(", | or ", self.values)) if self.kind == "word" else ()
 
-    def standard(self, tolerance=False):
-        """The default, without or with keyword tolerance."""
-        plain, _, with_tolerance = self.default.partition(", with tolerance ")
-        return with_tolerance if tolerance and with_tolerance else plain.split(", with ")[0]
+    def standard(self, given=None):
+        """The default, by itself or with a keyword or a keyword and its value: tolerance, formulation first."""
+        plain, *others = self.default.split(", with ")
+        return next((other.removeprefix(f"{given} ") for other in others if other.startswith(f"{given} ")), plain)
 
     @property
     def arguments(self):
@@ -60,19 +60,14 @@ class Keyword:
     @property
     def ranges(self):
         """Formulation -> (fewest, most) of an integer; the formulation is empty if there is one range."""
-        limits = re.findall(r"(\d+) to (\d+)(?: \((\w+)\))?", self.values)
-        return {formulation: (int(low), int(high)) for low, high, formulation in limits}
+        limits = re.findall(r"(\d+) to (\d+)(?: \(([\w, ]+)\))?", self.values)
+        return {name: (int(low), int(high)) for low, high, names in limits for name in names.split(", ")}
 
-    @property
-    def tuned(self):
-        """Formulation -> the integers for which corrector tuned has coefficients."""
-        sets = re.findall(r"([\d ]+) \((\w+), tuned\)", self.values)
-        return {formulation: tuple(map(int, numbers.split())) for numbers, formulation in sets}
-
-    @property
-    def of_one_formulation(self):
-        """True if a value has a meaning in only one of the two formulations."""
-        return len(self.ranges) > 1 or any(name == "formulation" for name, _, _ in self.requires)
+    def suits(self, formulation):
+        """True if a value that was given with another formulation has the same meaning with this one."""
+        if len(self.ranges) > 1 or any(name == "formulation" for name, _, _ in self.requires):
+            return False
+        return formulation != "momentum" or self.name not in ("passes", "project", "preset")
 
 
 def _condition(text):

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from benchmarks.engine import LammpsError, session
-from benchmarks.engine.methods import DEFAULTS
+from benchmarks.engine.methods import DEFAULTS, gear
 from benchmarks.engine.sites import pose_errors
 from benchmarks.studies.accuracy import evaluate, plan, runs
 from benchmarks.studies.accuracy.evaluate import Cost, cost_of, fitted_order
@@ -87,7 +87,7 @@ def lammps(tmp_path):
 
 
 def test_errors_of_a_run_and_its_repetition(lammps, tmp_path):
-    run = plan.Run(SCENE, plan.setting("second", 6), 10240)
+    run = plan.Run(SCENE, gear("second", 6), 10240)
     outcome, errors = runs.judged(lammps, run, runs.reference_of(SCENE, tmp_path, lammps))
     body, masses = outcome.molecules == 1, outcome.masses
     center = masses[body] @ outcome.after[body] / masses[body].sum()
@@ -107,7 +107,7 @@ def test_errors_of_a_run_and_its_repetition(lammps, tmp_path):
 def test_defaults_are_those_of_the_fix(lammps):
     """Stating the keywords that plan.py assumes as defaults does not change the last bit."""
     for formulation, method in DEFAULTS.items():
-        given = {} if formulation == "second" else {"formulation": formulation}
+        given = {} if formulation == "momentum" else {"formulation": formulation}
         bare = plan.Run(SCENE, method, 320).variables(False)
         bare = {k: v for k, v in bare.items() if k not in method.variables} | given
         told = plan.Run(SCENE, method, 320).perform(lammps)

@@ -9,7 +9,7 @@ from scene_files import read_atoms
 
 from running import EXAMPLES
 
-MOTIONS = ("first", "second", "rigid")
+MOTIONS = ("momentum", "second", "first", "rigid")
 METHODS = ("gear", "rigid", "rigid_big", "rigid_verlet")
 ENERGY = {1: -0.72360304, 2: -0.72360304, 3: 3.99270832}
 
@@ -166,16 +166,18 @@ def test_decks_run_in_a_fresh_clone(lmp_wheel, fresh, deck):
 
 # --- variables that all decks share -------------------------------------------------------------
 def test_what_is_set_reaches_the_fix(lmp_wheel, examples):
-    """values, passes and compensate are given to the fix only if set; more adds columns."""
+    """Keywords are given to the fix only if they are set; more adds columns."""
     deck = examples / "case1" / "in.case1"
-    named = {"steps": 0, "values": 8, "passes": 2, "compensate": "yes", "more": "f_move[1] pe"}
-    named |= {"corrector": "tuned"}
-    log = lmp_wheel.succeed(deck, named).log
-    words = " ".join(log.split())
-    assert "fix move body gear/quat molecule formulation second corrector tuned values 8 passes 2 compensate yes" in words
-    for variables, given in (({"choices": "paper"}, "preset paper"), ({"c0": "position"}, "corrector gear c0 position")):
+    named = {"formulation": "second", "corrector": "gear", "values": 8, "passes": 2, "compensate": "yes"}
+    words = " ".join(f"{name} {value}" for name, value in named.items())
+    second = {"formulation": "second", "c0": "position"}
+    for variables, given in (
+        (named | {"more": "f_move[1] pe"}, words),
+        ({"choices": "paper"}, "preset paper"),
+        (second, "formulation second c0 position"),
+    ):
         log = lmp_wheel.succeed(deck, {"steps": 0, **variables}).log
-        assert f"fix move body gear/quat molecule formulation second {given}" in " ".join(log.split())
+        assert f"fix move body gear/quat molecule {given}" in " ".join(log.split())
     log = lmp_wheel.succeed(deck, {"steps": 0}).log
     assert not any(
         f" {word} " in line

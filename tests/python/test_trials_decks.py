@@ -131,7 +131,7 @@ def test_trials_of_an_isokinetic_deck(make_deck):
         costs = cost.measure(deck, cost.Budget(6.0), errors=[1e-4], time=0.4, timings=1)
         with pytest.raises(DeckError, match="belongs to formulation first"):
             horizon.measure(deck, time=0.4, b="formulation second")
-    assert found.trials[1].keywords == "formulation first values 8 compensate yes"
+    assert found.trials[1].keywords == "formulation first values 7 compensate yes"
     assert found.largest[-1] < 1e-4
     assert costs.rows[0].best is not None
     assert all("first" in trial.keywords for trial, _ in costs.trials if trial.keywords)
@@ -149,7 +149,8 @@ def test_trials_at_constant_temperature(make_deck):
     assert deck.notes == [] and other[0].endswith("temp 0.5 0.8 0.3 tchain 2 thermostat separate")
     assert found.largest[-1] < 1e-4
     assert costs.rows[0].best is not None and costs.doubt < 1e-4
-    assert {"first", "second"} <= {trial.keywords.split()[1] for trial, _ in costs.trials if trial.keywords}
+    assert {"values 5", "values 9"} <= {trial.keywords for trial, _ in costs.trials}
+    assert costs.confirmation.keywords.startswith("formulation second")
 
 
 def test_chains_are_at_rest_at_the_beginning_of_every_trial(make_deck):
@@ -366,7 +367,7 @@ def test_lines_for_a_script_say_what_to_do_about_other_errors():
 class MadeUpDeck:
     """A deck of one moving site whose trials take time on a simulated clock."""
 
-    accurate, size, dt, end, notes = "formulation second values 8", 1.0, 1.0, 1e6, ()
+    accurate, size, dt, end, notes = "values 9", 1.0, 1.0, 1e6, ()
     time_unit = length_unit = ""
     units, partial, others, freedoms = "lj", False, False, None
     start = types.SimpleNamespace(steps=10**6, checkpoints=False)
@@ -379,12 +380,12 @@ class MadeUpDeck:
         return self.now
 
     def takes(self, keywords):
-        return "values 11" not in keywords
+        return True
 
     @staticmethod
     def error(keywords, dt):
         """Error of a trial per unit of time; it is of order 6, and increases a hundredfold at KNEE."""
-        order = 2 if keywords is None else 5 if "first" in keywords else 6
+        order = 2 if keywords is None else 5 if "formulation" in keywords or "values 11" in keywords else 6
         rise = 99.0 / (1.0 + (KNEE / dt) ** 12) if order == 6 else 0.0
         return 0.1 * dt**order * (1.0 + rise)
 
@@ -504,7 +505,7 @@ def test_table_7_is_one_use_of_horizon(run_case, examples, tmp_path):
     expected = [evaluate.parting_time(series[0].time, distance, level) for level in thresholds]
     out = tmp_path / "out"
     arguments = ["--var", "choices", "paper", "--time", "500", "--every", "1", "--out", str(out)]
-    arguments += ["--a", "formulation first corrector gear values 5 momentum predicted"]
+    arguments += ["--a", "formulation first values 5 momentum predicted"]
     arguments += ["--b", "formulation second"]
     arguments += [word for level in thresholds for word in ("--threshold", str(level))]
     deck = str(examples / "case2" / "in.case2")

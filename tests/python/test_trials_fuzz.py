@@ -13,8 +13,8 @@ from lammps_gearquat.trials import cost, measure, methods, script
 from lammps_gearquat.trials.script import DeckError
 
 LINES = 200
-GEAR = "start zero corrector gear c0 velocity passes 1"
-METHODS = (*measure.ACCURATE, *methods.methods(), cost.CONFIRMATION, GEAR)
+GEAR = "formulation second start zero corrector gear c0 velocity passes 1"
+METHODS = (*measure.ACCURATE, *methods.METHODS, *methods.ISOKINETIC, *cost.CONFIRMATION, GEAR)
 #: a field for the keyword gravity
 SETUP = arguments.SETUP + "fix field all gravity 1.0 vector 0 0 -1 disable\n"
 

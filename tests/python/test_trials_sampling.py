@@ -30,7 +30,7 @@ class MadeUpLiquid:
     freedom; ``own``: keywords of the deck's fix gear/quat, None for another fix.
     """
 
-    accurate, size, dt, end, notes = "formulation second values 8", 1.0, 2.0, 1e4, ()
+    accurate, size, dt, end, notes = "values 9", 1.0, 2.0, 1e4, ()
     time_unit, length_unit, units = "fs", "Å", "real"
     partial, others, map_missing, freedoms = False, False, True, FREEDOMS
     path = types.SimpleNamespace(name="in.liquid")
@@ -294,19 +294,8 @@ def test_translation_and_rotation_are_those_of_the_bodies(make_deck, style):
     assert drifted[0] > 0.2 and trial.positions.shape[0] == 1
 
 
-@pytest.mark.parametrize(("standard", "repeated"), [("9 (second), 8 (first)", True), ("auto", False)])
-def test_what_only_repeats_the_default_is_tried_once(monkeypatch, standard, repeated):
-    """For a fix with a default number of values, and for a fix that chooses it."""
-    table = {"formulation": "second", "values": standard}
-    rows = {name: types.SimpleNamespace(standard=lambda value=value: value) for name, value in table.items()}
-    monkeypatch.setattr(methods.keywords, "table", lambda: rows)
-    assert ("formulation second values 9" not in methods.methods()) == repeated
-    assert "formulation first values 8" in methods.methods()
-
-
-def test_the_default_of_the_fix_stands_first_and_once():
-    found = methods.methods()
-    assert found[0] == methods.DEFAULT == "" and len(set(found)) == len(found)
-    assert "formulation second values 7" in found
-    assert not {f"formulation second values {n}" for n in (7, 5, 11)} - set(found)
+def test_methods_of_a_deck():
+    free, held = (types.SimpleNamespace(takes=lambda _, whether=whether: whether) for whether in (True, False))
+    assert methods.methods(free)[0] == methods.DEFAULT == "" and "values 7" in methods.methods(free)
+    assert all(method.startswith("formulation first") for method in methods.methods(held))
     assert methods.named("") == "gear/quat (no keyword)" and methods.named(None) == "your fix"

@@ -152,29 +152,13 @@ def test_keywords_of_the_method_are_replaced_and_those_of_the_body_kept():
     assert line.numerics("") == own
     assert line.numerics("values 7") == f"{own} values 7"
     first = "formulation first momentum predicted"
-    assert line.numerics(first) == "formulation first start zero corrector gear momentum predicted"
+    assert line.numerics(first) == "formulation first start zero momentum predicted"
+    paper = parse("fix 1 a gear/quat single preset paper passes 1 project no compensate yes infile f")
+    assert paper.numerics("formulation first") == "preset paper passes 1 project no compensate yes formulation first"
+    assert paper.numerics("formulation momentum") == "compensate yes formulation momentum"
     for wrong in ("values", "valus 8", "infile g"):
         with pytest.raises(DeckError, match="pairs of a keyword"):
             line.numerics(wrong)
-
-
-def test_corrector_gear_is_added_where_there_are_no_tuned_coefficients(monkeypatch):
-    """It is added only there, and not to a line that states its corrector."""
-    table = dict(keywords.table())
-    sets = "4 to 12 (second), 3 to 8 (first), 6 8 (second, tuned), 5 (first, tuned)"
-    table["values"] = replace(table["values"], values=sets)
-    assert table["values"].tuned == {"second": (6, 8), "first": (5,)}
-    monkeypatch.setattr(keywords, "table", lambda: table)
-    line, start = parse("fix 1 a gear/quat single infile f"), "fix 1 a gear/quat single"
-    for text, added in (
-        ("values 8", ""),
-        ("values 7", " corrector gear"),
-        ("formulation first values 5 passes 1", ""),
-        ("formulation first values 6", " corrector gear"),
-        ("values 7 corrector tuned", ""),
-        ("passes 1", ""),
-    ):
-        assert line.with_numerics(text).text() == f"{start} {text}{added} infile f"
 
 
 def test_what_is_left_out_is_said():

@@ -14,7 +14,7 @@ LEAVES = ("horizon.csv", "parting.csv", "growth.csv", "horizon.png")
 @command(
     "gearquat horizon examples/case1/in.case1 --time 100",
     "gearquat horizon examples/case2/in.case2 --var choices paper --time 500 --every 1 --out case2 \\",
-    '    --a "formulation first corrector gear values 5 momentum predicted" --b "formulation second"',
+    '    --a "formulation first values 5 momentum predicted" --b "formulation second"',
 )
 @deck_options
 @cloup.option_group(

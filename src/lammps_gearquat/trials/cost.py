@@ -1,9 +1,9 @@
 """The cost of an error in the simulation of a deck: short trials over steps and orders.
 
 1. A reference: fix gear/quat of high order at finer and finer steps, until two of them agree far
-   better than required, and a trial with the other formulation that confirms the reference.  Smaller errors than the
-   difference of these two cannot be judged; the time of the trials is shortened until the smallest error can be judged,
-   but not below a tenth.
+   better than required, and a trial with another formulation or order that confirms the reference.  Smaller errors
+   than the difference of these two cannot be judged; the time of the trials is shortened until the smallest error can
+   be judged, but not below a tenth.
 2. Trials of every method from coarse to fine steps, to the same time.
 3. The relevant methods at interpolated steps, so that every recommended step has been tried.
 4. The same trials several times, interleaved, for their wall time: the smallest counts.
@@ -31,7 +31,8 @@ from .methods import methods, named, stated
 from .script import DeckError
 from .worker import NOT_FINISHED
 
-CONFIRMATION = "formulation first values 6 compensate yes"
+#: keywords of fix gear/quat that confirm a reference; the second text is for isokinetic decks
+CONFIRMATION = ("formulation second values 8 compensate yes", "formulation first values 6 compensate yes")
 #: default errors, in powers of ten of the size of the bodies
 DECADES = (1e-2, 1e-4, 1e-6, 1e-8)
 
@@ -245,9 +246,10 @@ class Inquiry:
             steps *= 2
         reference = finer[int(np.argmin(gaps)) + 1 if gaps else 0]
         steps = SAMPLES * math.ceil(1.25 * reference.steps / SAMPLES)
-        confirmation = self.attempt(CONFIRMATION, end, steps, SAMPLES)
+        second = next(filter(self.deck.takes, CONFIRMATION))
+        confirmation = self.attempt(second, end, steps, SAMPLES)
         if confirmation is None:
-            raise self.refusal("the reference cannot be confirmed", CONFIRMATION)
+            raise self.refusal("the reference cannot be confirmed", second)
         return reference, confirmation
 
     def gap(self, first, second):
@@ -310,7 +312,7 @@ class Inquiry:
 
     def climb_all(self, costs, errors, tries):
         """Add trials of all methods to ``costs``."""
-        tried = [None, *dict.fromkeys([*filter(self.deck.takes, methods()), *tries])]
+        tried = [None, *dict.fromkeys([*methods(self.deck), *tries])]
         middle = math.log(errors[0] * errors[-1]) / 2
         own_steps = gear_steps = max(round(costs.end / self.deck.dt), FEWEST_STEPS)
         timing = (SHARE_TIMING + drift.SHARE) * self.budget.seconds

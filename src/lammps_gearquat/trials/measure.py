@@ -18,9 +18,7 @@ from .worker import Worker
 
 DECK_ITSELF = "the deck's own"
 #: keywords of fix gear/quat for a reference trajectory; the second text is for isokinetic decks
-ACCURATE = tuple(
-    f"formulation {name} values {n} compensate yes" for name, n in (("second", 9), ("first", 8))
-)
+ACCURATE = ("values 9 compensate yes", "formulation first values 7 compensate yes")
 #: a checkpoint is good if steps from it differ from the steps of the deck by at most this part of the motion
 CHECKPOINT_ERROR = 1e-6
 

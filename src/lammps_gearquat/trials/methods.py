@@ -1,21 +1,16 @@
 """The methods that are tried in addition to the fix of the deck, and their names."""
 
-from .. import keywords
-
 #: no keyword about integration: the fix chooses by itself
 DEFAULT = ""
-#: formulation -> numbers of values; fewer values follow forces that change quickly, more values are better for smooth
-#: forces
-VALUES = {"second": (9, 7, 5, 11), "first": (8, 6, 4)}
+#: fewer values follow forces that change quickly, more values are better for smooth forces
+METHODS = (DEFAULT, *(f"values {n}" for n in (9, 7, 5, 11)))
+#: of decks with a constant kinetic energy
+ISOKINETIC = tuple(f"formulation first values {n}" for n in (6, 5, 4))
 
 
-def methods():
-    """Keywords of all methods, the default of the fix first; methods equal to the default are omitted."""
-    formulation, number = (keywords.table()[name].standard() for name in ("formulation", "values"))
-    # "9 (second), 8 (first)"
-    repeated = {f"formulation {formulation} values {words.split()[0]}" for words in number.split(", ") if formulation in words}
-    stated = [f"formulation {name} values {n}" for name, numbers in VALUES.items() for n in numbers]
-    return (DEFAULT, *(text for text in stated if text not in repeated))
+def methods(deck):
+    """Keywords of the methods for a Deck."""
+    return METHODS if deck.takes(DEFAULT) else ISOKINETIC
 
 
 def stated(method):

@@ -198,17 +198,17 @@ class FixLine:
                 f" be tried with '{text}'"
             )
         kept = self.only(*_PHYSICAL)
-        return replace(kept, keywords=_with_coefficients(pairs(text)) + kept.keywords)
+        return replace(kept, keywords=pairs(text) + kept.keywords)
 
     def numerics(self, text):
         """The keywords about integration of this line as text, updated by the keywords in ``text``.
 
-        A change of formulation drops the keywords that belong to the other one only.
+        A change of formulation drops the keywords that do not suit the new one.
         """
         own, new = dict(self.only("integration").keywords), dict(pairs(text))
-        if new.get("formulation", own.get("formulation")) != own.get("formulation"):
-            table = keywords.table()
-            own = {key: own[key] for key in own if not table[key].of_one_formulation}
+        (formulation,) = new.get("formulation", ("",))
+        if formulation and new["formulation"] != own.get("formulation"):
+            own = {key: own[key] for key in own if keywords.table()[key].suits(formulation)}
         return " ".join(f"{key} {values[0]}" for key, values in (own | new).items())
 
 
@@ -244,15 +244,6 @@ def pairs(text):
     if len(words) % 2 or unknown:
         raise DeckError(f"'{text}' should be pairs of a keyword ({', '.join(known)}) and its value")
     return tuple((key, (value,)) for key, value in zip(words[::2], words[1::2]))
-
-
-def _with_coefficients(numerics):
-    """Pairs of a keyword and its value, with corrector gear if there are no tuned coefficients."""
-    given, row = dict(numerics), keywords.table()["values"]
-    (formulation,) = given.get("formulation", ("second",))
-    values, tuned = given.get("values", ("",))[0], row.tuned.get(formulation, ())
-    lacks = values.isdigit() and int(values) not in tuned and "corrector" not in given
-    return (*numerics, ("corrector", ("gear",))) if lacks else numerics
 
 
 def moves_bodies(style):
@@ -301,7 +292,7 @@ def for_trials(line):
     if not left_out:
         return line, []
     if "tolerance" in left_out and "corrector" not in dict(kept.keywords):
-        standard = keywords.table()["corrector"].standard(tolerance=True)
+        standard = keywords.table()["corrector"].standard("tolerance")
         kept = replace(kept, keywords=(*kept.keywords, ("corrector", (standard,))))
     return kept, [
         f"fix {line.id} {line.style}: {', '.join(left_out)} left out, because trials have steps of equal"
