@@ -26,7 +26,7 @@ STEPS = (2.0, 2.5, 3.0, 4.0)
 #: omega h, and radians per step, of the picture
 RANGE = np.arange(0.06, 1.2001, 0.02)
 #: number of values -> color, in the picture: those that the fix chooses, and one more
-SHOWN = {DEFAULT_VALUES["momentum"]: "momentum", 7: "translation", 5: "first"}
+SHOWN = {DEFAULT_VALUES["momentum"]: "momentum", 7: "translation", 5: "rotation"}
 #: approximate wave numbers of the librations of liquid water in 1/cm, and a large step for them
 BAND, FEMTOSECONDS = (600, 850), 2.5
 
