@@ -49,8 +49,7 @@ def rigid(style, method):
     return Method(style.replace("/", "-"), f"fix {style}", {"method": method}, "rigid")
 
 
-#: formulation -> default number of values; with formulation momentum for slow motion.  Formulations second and first, those
-#: of the paper, have Gear's coefficients.
+#: formulation -> default number of values, of momentum for slow motion; those of the paper have Gear's coefficients
 DEFAULT_VALUES = {"momentum": 9, "second": 8, "first": 6}
 DEFAULTS = {formulation: gear(formulation, n) for formulation, n in DEFAULT_VALUES.items()}
 #: the fix without a keyword, which chooses the number of values itself

@@ -323,7 +323,8 @@ def test_growth_of_the_theory():
 
 def test_growth_of_stable_steps():
     text = " ".join(LIMITS.split())
-    bounds = re.search(r"up to (\d+) % with four values, (\d+) % with five or six, and less than (\S+) %", text).groups()
+    words = r"up to (\d+) % with four values, (\d+) % with five or six, and less than (\S+) %"
+    bounds = re.search(words, text).groups()
     changes = [[], [], []]
     for n, limit in documented_limits()["momentum"].items():
         of_n = changes[0 if n == 4 else 1 if n < 7 else 2]

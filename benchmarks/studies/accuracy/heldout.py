@@ -24,7 +24,7 @@ AWAY = 4.0
 #: errors are compared from ABOVE_FLOOR times the smallest error up to COARSE; round-off errors have the last two numbers
 #: as bounds
 COARSE, ABOVE_FLOOR, LEAST_ROUNDING, ROUNDING = 1e-3, 1e3, 1e-14, 1e-11
-#: bounds for the ratio of errors, formulation second over momentum: geometric mean, and any formulation in its worst scene
+#: bounds for the ratio of errors: geometric mean of second over momentum, and any formulation in its worst scene
 LEAST_MEAN, LEAST = 25.0, 1.0
 #: smallest and largest number of steps, and the ratio from one run to the next
 STEPS = 50, 2400, 2**0.5

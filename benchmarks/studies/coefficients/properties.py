@@ -107,8 +107,8 @@ class Flights:
 
 @dataclass(frozen=True)
 class Motions:
-    """``librations``: energy changes at LIBRATIONS; ``cages``: errors of test case 1 at CAGES; ``starts``: errors of the
-    other starts at START_STEPS."""
+    """``librations``: energy changes at LIBRATIONS; ``cages``: errors of test case 1 at CAGES; ``starts``: errors of
+    the other starts at START_STEPS."""
 
     librations: tuple
     cages: tuple

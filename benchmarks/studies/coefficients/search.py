@@ -1,8 +1,8 @@
 """The search for tuned coefficients: differential evolution over spurious roots, then Nelder-Mead.
 
 Parameters are the spurious roots without forces, inside the circle of radius INNER.  All other coefficients follow from
-the order conditions, except c_0 for an odd number of values: c_0 is chosen such that an oscillation at half of the reach
-keeps its energy.
+the order conditions, except c_0 for an odd number of values: c_0 is chosen such that an oscillation at half of the
+reach keeps its energy.
 """
 
 from dataclasses import dataclass
