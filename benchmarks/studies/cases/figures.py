@@ -118,7 +118,7 @@ def error_panel(results):
         Curve(label, steps, np.array(errors[label]), **look) for label, look in LOOKS.items()
     )
     title = f"test case 1: error of the center of mass at t = {ACCURACY_END:g}"
-    look = {"log": "xy", "xticks": ACCURACY_STEPS, "ylim": (1e-16, 1.0), "legend": False}
+    look = {"log": "xy", "xticks": ACCURACY_STEPS, "ylim": (1e-18, 1.0), "legend": False}
     return Panel(title, "step (one evaluation of the forces)", "", shown, **look)
 
 
