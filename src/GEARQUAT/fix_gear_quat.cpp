@@ -335,7 +335,6 @@ void FixGearQuat::post_run()
     end_minimization();
     return;
   }
-  motion->end_run();
   driven_box->end_run();
 }
 

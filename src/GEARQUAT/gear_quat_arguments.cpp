@@ -126,6 +126,9 @@ void Arguments::take_preset()
 {
   using Words = std::vector<std::pair<std::string, std::string>>;
   const bool first = is_on("formulation", "first");
+  if (given.count("tolerance"))
+    error->all(FLERR,
+               "Fix gear/quat preset paper: the paper has constant steps; leave out tolerance");
   if (given.count("formulation") && is_on("formulation", "momentum"))
     error->all(FLERR, "Fix gear/quat preset paper: the paper has formulations first and second");
   Words words = {{"formulation", "second"},
@@ -205,16 +208,15 @@ void Arguments::check_conditions() const
 /// Stores integers, including defaults, and ends the run if one is outside of its range.
 void Arguments::check_ranges()
 {
-  const bool tolerance = is_on("tolerance", "");
   for (const auto &row : keyword_table()) {
     if (row.kind != Keyword::INTEGER) continue;
     const Keyword::Range &range = row.range(scheme.first());
     KeywordValue value;
-    value.integer = row.standard_of(range, tolerance, !scheme.tuned);
+    value.integer = row.standard_of(range, !scheme.tuned);
     const bool is_stated = given.count(row.name) && !given.at(row.name).is("auto");
     if (is_stated) value = given.at(row.name);
     row.store(*this, value);
-    if (row.may_be_auto) automatic_values = !is_stated && !tolerance;
+    if (row.may_be_auto) automatic_values = !is_stated && !is_on("tolerance", "");
     if (row.may_be_auto && !is_stated) continue;
     if (value.integer < range.fewest || value.integer > range.most)
       error->all(FLERR, "Fix gear/quat {}: {} is not from {} to {}{}", row.name, value.text,
@@ -222,20 +224,12 @@ void Arguments::check_ranges()
                  row.ranges.size() == 1 ? std::string()
                                         : std::string(", as formulation ") +
                          word_of(scheme.formulation) + " requires");
-    if (tolerance && row.most_with_tolerance && value.integer > row.most_with_tolerance)
-      error->all(FLERR,
-                 "Fix gear/quat tolerance: {} {} are more than {}, the largest number for which "
-                 "the step may become shorter",
-                 value.integer, row.name, row.most_with_tolerance);
   }
 }
 
 void Arguments::check_control()
 {
-  scheme.trial = true;
-  control.fewest = find_keyword(lmp, "values").range(scheme.first()).fewest;
-  control.most = scheme.rows;
-  control.short_of = control.energy && !scheme.first() ? 1 : 0;
+  scheme = RememberedLoads::scheme(scheme.compensate, MOST_LOADS);
   const KeywordValue &eps = given.at("tolerance");
   if (!(control.eps >= std::numeric_limits<double>::min()) || !std::isfinite(control.eps))
     error->all(FLERR, "Fix gear/quat tolerance: {} times {} is too {}", eps.number, eps.unit,

@@ -13,7 +13,8 @@
 #ifndef LMP_GEAR_QUAT_ARGUMENTS_H
 #define LMP_GEAR_QUAT_ARGUMENTS_H
 
-#include "gear_quat_step_control.h"
+#include "gear_quat_chain.h"
+#include "gear_quat_remembered_loads.h"
 #include "pointers.h"
 
 #include <algorithm>
@@ -116,7 +117,6 @@ struct Keyword {
   std::vector<Standard> standards;    ///< WORD: other defaults, the first that applies counts
   std::vector<Range> ranges;          ///< INTEGER: one, or two, the second for formulation first
   int any_sign = 0;                   ///< NUMBERS: how many of the first may be negative or zero
-  int most_with_tolerance = 0;        ///< INTEGER: also the default then, within the range
   bool may_be_auto = false;           ///< INTEGER: the word auto is possible, and the default
   std::vector<Condition> needs, excludes;
 
@@ -132,10 +132,9 @@ struct Keyword {
     standard = default_word.empty() ? possible.front() : default_word;
     return follows(WORD, possible);
   }
-  Keyword &integer(const std::vector<Range> &possible, int at_most_with_tolerance = 0)
+  Keyword &integer(const std::vector<Range> &possible)
   {
     ranges = possible;
-    most_with_tolerance = at_most_with_tolerance;
     return follows(INTEGER, {});
   }
   Keyword &standard_with(const char *keyword, const char *value, const char *word)
@@ -178,9 +177,8 @@ struct Keyword {
   const Range &range(bool first) const { return ranges[first ? ranges.size() - 1 : 0]; }
 
   /// The default of an INTEGER.
-  int standard_of(const Range &range, bool tolerance, bool gear) const
+  int standard_of(const Range &range, bool gear) const
   {
-    if (tolerance && most_with_tolerance) return std::min(range.most, most_with_tolerance);
     return gear && range.standard_gear ? range.standard_gear : range.standard;
   }
 

@@ -38,7 +38,8 @@ void Barostat::set_heat(const Scheme &scheme)
 {
   Scheme of_heat;
   of_heat.formulation = Formulation::FIRST;
-  of_heat.rows = values_of_heat = std::min(CellHistory::scheme_of(scheme).values(), FIRST_MOST);
+  const int values = CellHistory::scheme_of(scheme).values() - scheme.remembers;
+  of_heat.rows = values_of_heat = std::min(values, FIRST_MOST);
   heat_coefficients = CorrectorCoefficients(of_heat).c;
 }
 
@@ -47,7 +48,7 @@ Barostat::Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sit
                    const Scheme &scheme) :
     Thermostat(lmp, fix, bodies, words_of(words, pressure), scheme),
     asked(pressure), virial(lmp, fix, sites), box(lmp, pressure.fixed), cell(scheme),
-    chain(std::max(1, pressure.length)), matrix(Upper::one()), changing_step(scheme.trial),
+    chain(std::max(1, pressure.length)), matrix(Upper::one()), changing_step(scheme.remembers),
     inverse(Upper::one())
 {
   set_heat(scheme);
@@ -263,6 +264,7 @@ void Barostat::measure()
 
 void Barostat::predict(const Integrator &integrator)
 {
+  prepare(integrator.step());
   cell.predict();
   matrix = cell.matrix();
   rate = cell.rate(integrator.step());
@@ -416,10 +418,9 @@ void Barostat::put_back()
 }
 
 /// The error as a length is the displacement at the faces of the box; as an energy, its work.
-void Barostat::errors(const VariableOrder &order, double h, int values,
-                      const Include &include) const
+void Barostat::errors(double h, int values, const Include &include) const
 {
-  Thermostat::errors(order, h, values, include);
+  Thermostat::errors(h, values, include);
   double length = 0.0, energy = 0.0;
   const Upper push = drive();
   for (int k = 0; k < Upper::SIZE; ++k) {
@@ -427,14 +428,25 @@ void Barostat::errors(const VariableOrder &order, double h, int values,
     length = std::max(length, 0.5 * domain->prd[k < 3 ? k : k == 3 ? 1 : 0] * strain);
     if (asked.on[k]) energy += mass_of(k) * strain * (std::fabs(push[k]) + std::fabs(rate[k] / h));
   }
-  StepMeasures found;
-  found.length = {length, length, length};
-  found.energy = {energy, energy, energy};
+  StepErrors found;
+  found.length = length;
+  found.energy = energy;
   include(found);
+}
+
+/// With a changing step, scalars have the coefficients of velocities.
+void Barostat::prepare(double h)
+{
+  if (!changing_step) return;
+  times.prepare(h);
+  cell.set_coefficients(times.coefficients());
+  const auto &c = times.coefficients().c;
+  for (int j = 0; j < values_of_heat; ++j) heat_coefficients[j] = 0.5 * (j + 1) * c[j + 1];
 }
 
 void Barostat::note_step(double h)
 {
+  times.conclude(h);
   Thermostat::note_step(h);
   watch_box(h);
 }

@@ -76,8 +76,7 @@ class Barostat : public Thermostat {
   void keep() override;
   void put_back() override;
   double longest_step() const override;
-  void errors(const VariableOrder &order, double h, int values,
-              const Include &include) const override;
+  void errors(double h, int values, const Include &include) const override;
   Cause instability(double h) const override;
   void follow_changes(double h) override;
   void rescale(double ratio) override;
@@ -114,11 +113,12 @@ class Barostat : public Thermostat {
   ScalarHistory heat;    ///< S
   int values_of_heat = 0;
   CorrectorCoefficients::Array heat_coefficients;    ///< of a first-order equation
-  double width = 0.0;                                ///< the step of the histories
-  Upper target;                                    ///< pressures of the present step, or at a node
-  Upper target_rate;                               ///< change of these targets with time
-  double kt = 0.0;                                 ///< of the mass of the box in that step
-  Upper made_target, made_rate;                    ///< of the last step before this run
+  RememberedLoads times{false};    ///< with a changing step: of the last drives of the box
+  double width = 0.0;              ///< the step of the histories
+  Upper target;                    ///< pressures of the present step, or at a node
+  Upper target_rate;               ///< change of these targets with time
+  double kt = 0.0;                 ///< of the mass of the box in that step
+  Upper made_target, made_rate;    ///< of the last step before this run
   std::array<double, Upper::SIZE> periods = {};    ///< damping times in the last step
   std::string told_of_box;                         ///< last message of the degrees of freedom
 
@@ -182,6 +182,7 @@ class Barostat : public Thermostat {
   double period_for_drive(double omega) const;
   double period_for_box(double h) const;
   void set_heat(const Scheme &scheme);
+  void prepare(double h);
   void advance_box(double h, int values);
   Upper drive() const;
   double rate_of_heat() const;

@@ -269,6 +269,7 @@ void Barostat::seed_local(double h, int terms)
   const Upper second = CellHistory::acceleration(matrix, rate, now, friction_of_box);
   Upper series[3] = {matrix, (rate * matrix).scaled(h), second.scaled(0.5 * h * h)};
   cell.seed(series[0].m.data(), terms, h, h);
+  times.begin(SECOND_PAPER - 2, std::fabs(h));
   const double of_heat[2] = {heat.value(), h * rate_of_heat()};
   heat.seed(of_heat, 2, h, h, values_of_heat);
   const double twice = twice_kinetic_of_box();
@@ -456,6 +457,7 @@ void Barostat::fields(Fields &v)
   Thermostat::fields(v);
   v(temperature, kt, width, target, target_rate, correction, periods, virial, box, cell, heat,
     chain, frequency);
+  if (changing_step) v(times);
   if (!v.reads()) return;
   if (!acts() && asked.temperature == 0.0) words.start = words.stop = temperature;
   matrix = cell.matrix();

@@ -346,7 +346,7 @@ std::string Blowup::shorter_step(double h) const
   const double size = std::fabs(h);
   if (size <= shortest)
     return fmt::format("Leave out dtmin, or use one much shorter than {:g}", shortest);
-  if (scheme.trial)
+  if (scheme.remembers)
     return fmt::format("Use a smaller tolerance, or a dtmax shorter than {:g}", size);
   const double step = rounded_down(pace.longest_step(scheme));
   if (step < size && step > OVERLAP * size)

@@ -11,14 +11,14 @@ using namespace GearQuat;
 /* ---------------------------------------------------------------------- */
 
 Bodies::Bodies(const Scheme &scheme) :
-    scheme(scheme), row_size(scheme.size() * (scheme.trial ? 2 : 1))
+    scheme(scheme), row_size(scheme.size() * (scheme.remembers ? 2 : 1))
 {
 }
 
 void Bodies::set_scheme(const Scheme &other)
 {
   scheme = other;
-  row_size = scheme.size() * (scheme.trial ? 2 : 1);
+  row_size = scheme.size() * (scheme.remembers ? 2 : 1);
   rows.assign((size_t) nmove * row_size, 0.0);
 }
 

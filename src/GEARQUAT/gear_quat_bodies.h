@@ -100,7 +100,7 @@ class Bodies {
   /// The history of a body; only for bodies that this rank moves.
   double *history(int ibody) { return rows.data() + (size_t) ibody * row_size; }
   const double *history(int ibody) const { return rows.data() + (size_t) ibody * row_size; }
-  /// Doubles of a history; with a trial row, including the saved copy.
+  /// Doubles of a history; with trial rows, including the saved copy.
   int history_size() const { return row_size; }
 
   // Code that moves bodies writes states and corrections, and frames or update_frames().
@@ -119,7 +119,7 @@ class Bodies {
   }
   /// Fresh bodies have received histories; from now on they are treated like all others.
   void take_in_fresh();
-  // With a trial row: saves histories for a step that may be undone, even if bodies move to other
+  // With trial rows: saves histories for a step that may be undone, even if bodies move to other
   // ranks in it.
   void keep_histories();
   void put_back_histories();

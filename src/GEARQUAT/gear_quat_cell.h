@@ -171,13 +171,9 @@ class CellHistory {
 
   explicit CellHistory(const Scheme &of_bodies) { set_scheme(of_bodies); }
 
-  /// With a changing step the numbers of values of bodies change, too, but the number of this
-  /// history is fixed.
-  static constexpr int VALUES_OF_CHANGING_STEP = 6;
   static Scheme scheme_of(const Scheme &bodies)
   {
     Scheme scheme = bodies;
-    if (scheme.trial) scheme.rows = std::min(scheme.values(), VALUES_OF_CHANGING_STEP);
     if (scheme.first()) {
       scheme.rows = std::max(scheme.values(), SECOND_FEWEST);
       scheme.formulation = Formulation::SECOND;
@@ -187,8 +183,12 @@ class CellHistory {
   void set_scheme(const Scheme &of_bodies)
   {
     const Scheme scheme = scheme_of(of_bodies);
-    const CorrectorCoefficients all(scheme);
     n = scheme.values();
+    set_coefficients(CorrectorCoefficients(scheme));
+  }
+  /// For the next step.
+  void set_coefficients(const CorrectorCoefficients &all)
+  {
     c = all.c;
     weight = std::sqrt(all.weight2);
   }

@@ -54,7 +54,7 @@ struct ChainTarget {
 
 /// A polynomial in the time since the present time of a chain, in units of a step.
 struct ChainDrive {
-  static constexpr int MOST = 2 * ((MAX_VALUES + 1) / 2) + 1;    ///< terms in a start
+  static constexpr int MOST = 2 * ((MOST_ROWS + 1) / 2) + 1;    ///< terms in a start
   int terms = 0;
   std::array<double, MOST> c = {};
 
@@ -81,7 +81,7 @@ class Chain {
   static constexpr int MOST = LONGEST + 1;
   using Variables = std::array<double, MOST>;    ///< xi_1 ... xi_M, S
   /// Number of stored sums 2K: for the polynomial, and two more for its error.
-  static constexpr int MOST_SUMS = MAX_VALUES + 2;
+  static constexpr int MOST_SUMS = MOST_ROWS + 2;
   /// A chain with STIFF sub-steps per step is stiff; beyond GIVEN_UP the solution is abandoned.
   static constexpr int STIFF = 4, GIVEN_UP = 200000;
   static constexpr double SETTLING = 10.0;    ///< steps until a stiff chain varies slowly
@@ -233,25 +233,19 @@ class Chain {
     ages[0] = 0.0;
   }
 
-  /// The leading terms in the rate of the friction that a polynomial through 2K at `values` times
-  /// does not represent, with powers of h (1/time): h^(j+1) (2K)^(j)/(g kT tau^2) for j = values -
-  /// 1, values and values + 1; after conclude().
-  struct LeftOut {
-    double fewer = 0.0, same = 0.0, more = 0.0;
-  };
-  LeftOut left_out(const ChainTarget &target, double h, int values) const
+  /// The leading term in the rate of the friction that a polynomial through 2K at `values` times
+  /// does not represent, with powers of h (1/time): h^(j+1) (2K)^(j)/(g kT tau^2) for j = values;
+  /// after conclude().
+  double left_out(const ChainTarget &target, double h, int values) const
   {
-    LeftOut found;
-    if (target.freedoms <= 0.0) return found;
+    if (target.freedoms <= 0.0) return 0.0;
     double factor = std::fabs(h) / (target.freedoms * target.kt * target.period * target.period);
-    double d[MOST_SUMS];
+    double d[MOST_SUMS], found = 0.0;
     std::copy_n(sums.begin(), known, d);
-    for (int j = 1; j < known && j <= values + 1; ++j) {
+    for (int j = 1; j < known && j <= values; ++j) {
       for (int i = known - 1; i >= j; --i) d[i] = (d[i - 1] - d[i]) * h / (ages[i] - ages[i - j]);
       factor *= j;
-      found.more = factor * std::fabs(d[j]);
-      if (j <= values) found.same = found.more;
-      if (j < values) found.fewer = found.more;
+      found = factor * std::fabs(d[j]);
     }
     return found;
   }

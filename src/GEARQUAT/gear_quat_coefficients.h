@@ -65,6 +65,9 @@ constexpr int FIRST_FEWEST = 3, FIRST_MOST = 8, FIRST_PAPER = 5;
 constexpr int SECOND_FEWEST = 4, SECOND_MOST = 12, SECOND_PAPER = 6;
 constexpr int MAX_VALUES = SECOND_MOST;
 
+/// Loads remembered with keyword tolerance, and rows of the longest history.
+constexpr int MOST_LOADS = 13, MOST_ROWS = MOST_LOADS + 2;
+
 /// gamma_k, the magnitude of the weight of the k-th backward difference in the formulas of Adams
 /// and Moulton, k >= 1: sum over i = 0..k of signed weights / (k + 1 - i) vanishes.
 inline Fraction adams_moulton(int k)

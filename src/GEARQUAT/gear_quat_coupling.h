@@ -21,8 +21,8 @@
 
 #include "gear_quat_bodies.h"
 #include "gear_quat_fields.h"
+#include "gear_quat_remembered_loads.h"
 #include "gear_quat_startup.h"
-#include "gear_quat_step_control.h"
 #include "pointers.h"
 
 #include <functional>
@@ -103,11 +103,8 @@ class Coupling : protected Pointers {
   /// Longest next step; infinite for no limit.  Local.
   virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
   /// Calls `include` with the errors of the coupling in this step of h.  Local.
-  using Include = std::function<void(const StepMeasures &)>;
-  virtual void errors(const VariableOrder & /*order*/, double /*h*/, int /*values*/,
-                      const Include & /*include*/) const
-  {
-  }
+  using Include = std::function<void(const StepErrors &)>;
+  virtual void errors(double /*h*/, int /*values*/, const Include & /*include*/) const {}
   /// The cause if the coupling is unstable in steps of h, otherwise empty.  Local.
   virtual Cause instability(double /*h*/) const { return {}; }
 

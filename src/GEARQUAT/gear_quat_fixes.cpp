@@ -90,8 +90,7 @@ void OtherFixes::refuse_thermostat(const Fix *other) const
 
 void OtherFixes::tell_noise()
 {
-  const bool chosen = args.control.eps > 0.0 && !args.states("values");
-  if (warned_noise || chosen) return;
+  if (warned_noise || args.control.eps > 0.0) return;
   const NoisyForces found = noise_of_forces(lmp, ownership);
   const bool first = args.scheme.first() && found.noise == Noise::RANDOM;
   if (!first && (args.automatic_values || suits_noise(args.scheme, found.noise))) return;

@@ -48,7 +48,7 @@ struct Scheme {
   bool predicted_momentum = false;    ///< first: momentum that feeds Eq. 13 (the paper's)
   bool project = true;                ///< first, second: onto |q| = 1 after every step
   bool compensate = false;            ///< compensated sums of the rows that are integrated
-  bool trial = false;                 ///< one more row, see gear_quat_step_control.h
+  bool remembers = false;             ///< two more rows, see gear_quat_remembered_loads.h
 
   bool first() const { return formulation == Formulation::FIRST; }
   bool momentum() const { return formulation == Formulation::MOMENTUM; }
@@ -59,8 +59,8 @@ struct Scheme {
   /// values are for short steps.
   int coupled_passes() const { return !momentum() ? passes : values() < 9 ? 3 : 2; }
   int carries() const { return compensate ? (first() ? 1 : 2) : 0; }
-  /// Doubles of a history: rows, carries, trial row.
-  int size() const { return (values() + carries() + trial) * width(); }
+  /// Doubles of a history: rows, carries, trial rows.
+  int size() const { return (values() + carries() + (remembers ? 2 : 0)) * width(); }
   int trial_row() const { return (values() + carries()) * width(); }
   /// Order of the error of positions in time, if forces vary slowly along the trajectory (otherwise
   /// N for even N, and N - 1 with velocity_c0).  See gear_quat_tuned.h.
@@ -85,11 +85,11 @@ struct Scheme {
   double norm2(const double *q) const { return project ? dot4(q, q) : 1.0; }
 };
 
-/// Doubles of the longest history, compensated and with a trial row.
+/// Doubles of the longest history, compensated and with trial rows.
 constexpr int MAX_SIZE = (FIRST_MOST + 2) * Scheme::FIRST_WIDTH >
-        (SECOND_MOST + 3) * Scheme::SECOND_WIDTH
+        (MOST_ROWS + 4) * Scheme::SECOND_WIDTH
     ? (FIRST_MOST + 2) * Scheme::FIRST_WIDTH
-    : (SECOND_MOST + 3) * Scheme::SECOND_WIDTH;
+    : (MOST_ROWS + 4) * Scheme::SECOND_WIDTH;
 
 template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   static double *carry_of(double *rows, int n, int row) { return rows + (n + row) * WIDTH; }
@@ -110,8 +110,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
 
   /// Advance the history by one step: the Taylor series (Eq. 11) as additions of Pascal's triangle.
   /// After the call row j holds h^j/j! times the j-th derivative of the same polynomial at t + h.
-  /// n: 3 to 12, for all formulations.  COUNT: components from the first on; the others do not
-  /// change.
+  /// n: 3 to 15.  COUNT: components from the first on; the others do not change.
   template <int COUNT = WIDTH> static void predict(double *rows, int n)
   {
     switch (n) {    // a number of rows known at compile time, so that a column stays in registers
@@ -135,6 +134,12 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
         return pascal<11, COUNT>(rows);
       case 12:
         return pascal<12, COUNT>(rows);
+      case 13:
+        return pascal<13, COUNT>(rows);
+      case 14:
+        return pascal<14, COUNT>(rows);
+      case 15:
+        return pascal<15, COUNT>(rows);
     }
   }
 
@@ -193,19 +198,19 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   {
     for (int c = 0; c < COUNT; ++c) {
       double y[N], carry[CARRIES + 1];
-#pragma GCC unroll 12
+#pragma GCC unroll 15
       for (int j = 0; j < N; ++j) y[j] = rows[j * WIDTH + c];
 #pragma GCC unroll 2
       for (int j = 0; j < CARRIES; ++j) carry[j] = carry_of(rows, N, j)[c];
-#pragma GCC unroll 12
+#pragma GCC unroll 15
       for (int pass = 0; pass < N - 1; ++pass)
-#pragma GCC unroll 12
+#pragma GCC unroll 15
         for (int j = N - 2; j >= pass; --j)
           if (j < CARRIES)
             add_exactly(y[j], carry[j], y[j + 1]);
           else
             y[j] += y[j + 1];
-#pragma GCC unroll 12
+#pragma GCC unroll 15
       for (int j = 0; j < N; ++j) rows[j * WIDTH + c] = y[j];
 #pragma GCC unroll 2
       for (int j = 0; j < CARRIES; ++j) carry_of(rows, N, j)[c] = carry[j];

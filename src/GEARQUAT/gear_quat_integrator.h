@@ -59,7 +59,8 @@ class Integrator : public Kinematics {
   /// Uses the given coefficients, as many as in the scheme.
   Integrator(const Scheme &scheme, double h, const CorrectorCoefficients &coefficients) :
       Kinematics(scheme, h), n(scheme.values()),
-      turning(n - 1, std::max(scheme.order(), LEAST_ORDER), std::pow(10.0, -std::min(15, n + 8))),
+      turning(n - 1, std::max(scheme.order(), LEAST_ORDER),
+              std::pow(10.0, scheme.remembers ? -15 : -std::min(15, n + 8))),
       corrector(coefficients)
   {
   }
@@ -93,9 +94,12 @@ class Integrator : public Kinematics {
     with_history([&](auto history) {
       history.rescale(rows, n, ratio);
     });
-    if (!scheme.trial) return;
-    const double factor = std::pow(ratio, n);
-    for (int i = 0; i < scheme.width(); ++i) rows[scheme.trial_row() + i] *= factor;
+    if (!scheme.remembers) return;
+    double factor = std::pow(ratio, n), *above = rows + scheme.trial_row();
+    for (int i = 0; i < 2 * scheme.width(); ++i) {
+      if (i == scheme.width()) factor *= ratio;
+      above[i] *= factor;
+    }
   }
 
   /// Corrects a predicted history with the load at the predicted pose, then projects.  axes: of
@@ -214,6 +218,31 @@ class Integrator : public Kinematics {
     Nordsieck<1>::correct<1>(rows_of_scalar, n, corrector.c.data(), 0, &residual);
   }
 
+  /// Formulation momentum: moves and turns a body, and changes its momenta.  place: as in row 0, with
+  /// the integral of h L in the columns of L; rate: as in row 1.
+  void displace(const RigidBody &body, const double *place, const double *rate, double *rows) const
+  {
+    double turn[3], change[4];
+    turn_of(body, axes_of(rows).data(), place + Scheme::ANGULAR_MOMENTUM, turn);
+    small_turn(rows + Scheme::SECOND_QUATERNION, turn, change);
+    const auto add = [&](auto history) {
+      history.template add<3>(rows, n, 0, Scheme::POSITION, place);
+      history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
+      history.template add<6>(rows, n, 1, Scheme::POSITION, rate);
+    };
+    scheme.compensate ? add(Momenta<2>()) : add(Momenta<0>());
+  }
+
+  /// I^-1 A L, along the principal axes.
+  static void turn_of(const RigidBody &body, const double *axes, const double *momentum,
+                      double *turn)
+  {
+    double per_inertia[3];
+    to_body(axes, momentum, turn);
+    inverse_moments(body, per_inertia);
+    for (int i = 0; i < 3; ++i) turn[i] *= per_inertia[i];
+  }
+
   /// Torque and moments of inertia are not used.
   Correction correct_center(const RigidBody &body, const Load &load, double *rows) const
   {
@@ -261,7 +290,37 @@ class Integrator : public Kinematics {
     const double *first[Turn::LANES];
     for (int body = 0; body < count; ++body) first[body] = rows[body] + Scheme::SECOND_QUATERNION;
     turning.changes(count, bodies, first, Scheme::SECOND_WIDTH, turned);
+    for (int body = 0; body < count && scheme.remembers; ++body)
+      turn_in_parts(*bodies[body], rows[body], turned[body]);
   }
+
+  /// The series of a turn converge up to an angle; steps of remembered loads may be longer.
+  void turn_in_parts(const RigidBody &body, const double *rows, double *turned) const
+  {
+    constexpr double FARTHEST = 0.7;
+    const double *q = rows + Scheme::SECOND_QUATERNION;
+    const double *momenta = rows + Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM;
+    double axes[9], angle[3], now[4];
+    rotation_matrix(q, 1.0, axes);
+    turn_of(body, axes, momenta, angle);
+    const double parts = std::ceil(length(angle) / FARTHEST);
+    if (!(parts > 1.0) || !(parts < MOST_PARTS)) return;
+    copy(q, 4, now);
+    for (double part = 0.0; part < parts; ++part) {
+      Turn::Momentum rest;    // about the beginning of the part
+      for (int i = 0; i < 3; ++i) {
+        double unit = 1.0 / parts;
+        for (int k = 0; k + 1 < n; ++k)
+          rest[k][i] = (k + 1) * momenta[k * Scheme::SECOND_WIDTH + i];
+        for (int j = 0; j + 2 < n; ++j)
+          for (int k = n - 3; k >= j; --k) rest[k][i] += part / parts * rest[k + 1][i];
+        for (int k = 0; k + 1 < n; ++k, unit /= parts) rest[k][i] *= unit;
+      }
+      turning.advance(body, rest, now);
+    }
+    for (int i = 0; i < 4; ++i) turned[i] = now[i] - q[i];
+  }
+  static constexpr double MOST_PARTS = 1.0e4;
 
   /// Calls act with the kind of history that this scheme has.
   template <class Act> void with_history(Act act) const

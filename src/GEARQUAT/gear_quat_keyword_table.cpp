@@ -16,6 +16,8 @@ static constexpr char HELD[] =
 static constexpr char ONE_TEMPERATURE[] =
     "both keep the kinetic energy of the bodies; leave out one of the two";
 static constexpr char MOVING_BOX[] = "with a moving box it is not possible yet";
+static constexpr char REMEMBERED[] =
+    "with a tolerance, bodies remember their last loads, as many as reduce the error";
 static constexpr char RENUMBERED[] = "the numbers of bodies change when bodies are inserted";
 
 using Value = KeywordValue;
@@ -42,28 +44,27 @@ static const std::vector<Keyword> TABLE = {
             a.scheme.formulation = v.is("first") ? Formulation::FIRST
                 : v.is("second")                 ? Formulation::SECOND
                                                  : Formulation::MOMENTUM;
-          }).word({"momentum", "second", "first"}),
+          }).word({"momentum", "second", "first"}).cannot_go_with({"tolerance", "", REMEMBERED}),
   Keyword("values", INTEGRATION, "how many values a history keeps of each function",
           [](Arguments &a, const Value &v) { a.scheme.rows = v.integer; })
-      .integer({{SECOND_FEWEST, SECOND_MOST, 9, 8}, {FIRST_FEWEST, FIRST_MOST, 8, 6}}, VARIABLE_MOST)
-      .or_auto(),
+      .integer({{SECOND_FEWEST, SECOND_MOST, 9, 8}, {FIRST_FEWEST, FIRST_MOST, 8, 6}})
+      .or_auto().cannot_go_with({"tolerance", "", REMEMBERED}),
   Keyword("corrector", INTEGRATION, "which coefficients correct a history",
           [](Arguments &a, const Value &v) { a.scheme.tuned = v.is("tuned"); })
-      .word({"tuned", "gear"}).standard_with("tolerance", "", "gear")
+      .word({"tuned", "gear"})
       .standard_with("formulation", "second", "gear").standard_with("formulation", "first", "gear")
       .requires_also({"formulation", "momentum", "the others have Gear's coefficients", "tuned"})
-      .cannot_go_with({"tolerance", "tuned", "with tuned coefficients, errors from a change of "
-                       "the step decay too slowly; leave out corrector, or write corrector gear"}),
+      .cannot_go_with({"tolerance", "", REMEMBERED}),
   Keyword("passes", INTEGRATION, "how many corrections a step makes with the same forces",
           [](Arguments &a, const Value &v) { a.scheme.passes = v.integer; })
       .integer({{1, 2, 2}}),
   Keyword("compensate", INTEGRATION, "whether sums are compensated for round-off",
           [](Arguments &a, const Value &v) { a.scheme.compensate = v.is("yes"); })
-      .word({"no", "yes"}),
+      .word({"no", "yes"}).standard_with("tolerance", "", "yes"),
   Keyword("start", INTEGRATION, "which derivatives a history begins with",
           [](Arguments &a, const Value &v) {
             a.start = v.is("zero") ? Arguments::Start::ZERO : Arguments::Start::BOOTSTRAP;
-          }).word({"bootstrap", "zero"}),
+          }).word({"bootstrap", "zero"}).cannot_go_with({"tolerance", "", REMEMBERED}),
   Keyword("project", INTEGRATION, "whether quaternions are projected to unit length",
           [](Arguments &a, const Value &v) { a.scheme.project = v.is("yes"); })
       .word({"yes", "no"}),
@@ -71,9 +72,7 @@ static const std::vector<Keyword> TABLE = {
           [](Arguments &a, const Value &v) {
             a.control.eps = v.number * v.unit;
             a.control.energy = v.measure == "energy";
-          }).number({"length", "energy"})
-      .cannot_go_with({"isokinetic", "", "its heat and its multipliers require a constant step "
-                                         "and number of values"}),
+          }).number({"length", "energy"}),
   Keyword("dtmin", STEP, "the time step does not become shorter",
           [](Arguments &a, const Value &v) { a.control.shortest = v.number; })
       .number().requires_also({"tolerance", "", ""}),

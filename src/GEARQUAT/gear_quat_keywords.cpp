@@ -115,7 +115,6 @@ std::string Keyword::required() const
 std::string Keyword::possible_values() const
 {
   std::string text = required();
-  if (most_with_tolerance) text += fmt::format(", at most {} (tolerance)", most_with_tolerance);
   return text;
 }
 
@@ -202,14 +201,9 @@ std::string default_cell(const Keyword &row)
                           other.value, other.word);
     return cell;
   }
-  const auto standard = [&row](bool tolerance, bool gear) {
-    return of_formulations(row, [&row, tolerance, gear](const Keyword::Range &range) {
-      return std::to_string(row.standard_of(range, tolerance, gear));
-    });
-  };
-  std::string cell = row.may_be_auto ? "auto" : standard(false, false);
-  if (row.most_with_tolerance) cell += ", with tolerance " + standard(true, true);
-  return cell;
+  return row.may_be_auto ? "auto" : of_formulations(row, [&row](const Keyword::Range &range) {
+    return std::to_string(row.standard_of(range, false));
+  });
 }
 
 /// A value in brackets belongs to the keyword of the row, any other to the other keyword.

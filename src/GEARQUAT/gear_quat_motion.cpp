@@ -108,11 +108,6 @@ double Motion::longest_step() const
   return step.coupling ? step.coupling->longest_step() : HUGE_VAL;
 }
 
-void Motion::end_run()
-{
-  if (step.tolerance) step.tolerance->end_run();
-}
-
 void Motion::take_velocities(bigint of_step, bool end)
 {
   if (!others.any_taken()) return;
@@ -156,9 +151,10 @@ void Motion::begin_steps(const Fleet &fleet, double **f, double **torque)
       full.push_back(motion);
       needed.push_back(needs);
     } else if (needs) {
-      motion->starter(true).seed_local(2, motion->step.length());
-      motion->begin(false);
-      if (motion->step.tolerance) motion->step.tolerance->shorten_first_step(false);
+      if (motion->step.tolerance) motion->step.tolerance->begin();
+      motion->starter(true).seed_local(motion->step.tolerance ? 3 : 2, motion->step.length());
+      motion->begin();
+      if (motion->step.tolerance) motion->step.tolerance->shorten_first_step();
     }
   }
   start_together(full, needed);
@@ -178,10 +174,7 @@ void Motion::start_together(const std::vector<Motion *> &full, const std::vector
     if (needed[n] || together) starters.push_back(full[n]->starter(needed[n]));
   const bool found = Start(full[0]->lmp, starters, full[0]->step.length()).run();
   for (size_t n = 0; n < full.size(); ++n)
-    if (needed[n] || (together && found)) full[n]->begin(found);
-  for (size_t n = 0; n < full.size(); ++n)    // a change of the step changes the step of all fixes
-    if ((found || needed[n]) && full[n]->step.tolerance)
-      full[n]->step.tolerance->shorten_first_step(found);
+    if (needed[n] || (together && found)) full[n]->begin();
 }
 
 /// Returns null if the histories can continue.  Collective.
@@ -196,7 +189,7 @@ const char *Motion::reason_to_start_anew(double **f)
     return "other fixes move atoms than in the last steps";
   if (const char *other = another_scheme_suits()) return other;
   const char *changed = step.coupling ? step.coupling->reason_to_start_anew() : nullptr;
-  if (changed && bootstraps() && forces_can_be_followed()) return changed;
+  if (changed && (step.tolerance || (bootstraps() && forces_can_be_followed()))) return changed;
   return forces_changed(f) ? "forces have changed since the last step" : nullptr;
 }
 
@@ -305,27 +298,18 @@ Starter Motion::starter(bool needed)
       return foresee_scheme(here);
     };
   }
-  return {fix,
-          &bodies,
-          &ownership,
-          &sites,
-          step.coupling.get(),
-          step.tolerance ? step.tolerance->scheme_of_start() : step.scheme(),
-          needed,
-          choose,
-          foresee};
+  return {fix,           &bodies, &ownership, &sites, step.coupling.get(),
+          step.scheme(), needed,  choose,     foresee};
 }
 
-/// Histories have started.  full: all their rows are known.
-void Motion::begin(bool full)
+/// Histories have started.
+void Motion::begin()
 {
   step.started = true;
   // after the checks of the start, since an error of a coupling may have the same cause
   if (chosen) warn_of_vibrations(*chosen, step.scheme(), true);
   chosen.reset();
-  if (!step.tolerance) return;
-  step.tolerance->begin(full);
-  step.make_integrator();
+  if (step.tolerance) step.make_integrator();
 }
 
 /* ----------------------------------------------------------------------
@@ -361,7 +345,7 @@ Motion::Settings Motion::settings() const
   found.formulation = (double) scheme.formulation;
   found.values = scheme.values();
   found.compensate = scheme.compensate;
-  found.tolerance = scheme.trial;
+  found.tolerance = scheme.remembers;
   found.tuned = scheme.tuned;
   found.isokinetic = (int) args.isokinetic;
   found.chains = temp.damp > 0.0 ? 1 + temp.separate : 0;

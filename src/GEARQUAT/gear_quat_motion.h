@@ -36,7 +36,6 @@ class Motion : protected Pointers {
   void impose_masks();
   /// Called before the first step, when its poses, velocities and loads are present.  Collective.
   void begin_run();
-  void end_run();
 
   /// Before a step: bodies, and then their histories, adopt velocities that other fixes have given
   /// to atoms, at the end of that step if `end`.  Collective.
@@ -119,12 +118,12 @@ class Motion : protected Pointers {
   void warn_of_values(const ChoiceOfValues &scene);
   const char *another_scheme_suits();
   std::string words_of_scheme() const;
-  /// True unless start zero is given: a start determines as many derivatives as it can.
-  bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP; }
+  /// True unless start zero or a tolerance is given: a start determines as many derivatives as it can.
+  bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP && !step.tolerance; }
   bool has_to_start(double **f);
   static void start_together(const std::vector<Motion *> &full, const std::vector<bool> &needed);
   Starter starter(bool needed);
-  void begin(bool full);
+  void begin();
   const char *reason_to_start_anew(double **f);
   bool can_start_anew() const;
   bool forces_can_be_followed() const;

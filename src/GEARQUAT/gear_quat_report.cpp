@@ -117,6 +117,15 @@ static const char cite_pressure[] =
     " pages = {4177--4189}\n"
     "}\n\n";
 
+static const char cite_adams[] =
+    "fix gear/quat tolerance: method of Adams with variable step and order\n\n"
+    "@Book{Shampine1975,\n"
+    " author = {L. F. Shampine and M. K. Gordon},\n"
+    " title = {Computer Solution of Ordinary Differential Equations: The Initial Value Problem},\n"
+    " publisher = {Freeman},\n"
+    " year = 1975\n"
+    "}\n\n";
+
 static const char cite_gear[] =
     "fix gear/quat: predictor-corrector method\n\n"
     "@Book{Gear1971,\n"
@@ -129,7 +138,7 @@ static const char cite_gear[] =
 void GearQuat::add_citations(LAMMPS *lmp, const Arguments &args)
 {
   if (!lmp->citeme) return;
-  lmp->citeme->add(cite_gear);
+  lmp->citeme->add(args.scheme.remembers ? cite_adams : cite_gear);
   if (args.scheme.first()) lmp->citeme->add(cite_first);
   if (args.scheme.formulation == Formulation::SECOND) lmp->citeme->add(cite_second);
   if (args.isokinetic != Isokinetic::NONE) lmp->citeme->add(cite_isokinetic);
@@ -303,9 +312,11 @@ static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments 
 static std::string settings(const Arguments &args)
 {
   const Scheme &scheme = args.scheme;
-  const std::string values = args.automatic_values
-      ? "values auto"
-      : fmt::format("{}{} values", args.control.eps > 0.0 ? "at most " : "", scheme.values());
+  if (scheme.remembers)
+    return fmt::format("  formulation {}, at most {} remembered loads\n",
+                       word_of(scheme.formulation), MOST_LOADS);
+  const std::string values = args.automatic_values ? "values auto"
+                                                   : fmt::format("{} values", scheme.values());
   const std::string passes = scheme.momentum()
       ? ""
       : fmt::format(" {} pass{},", scheme.passes, scheme.passes == 1 ? "" : "es");

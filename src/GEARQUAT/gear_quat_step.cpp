@@ -25,20 +25,29 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
-/// The keywords exclude two couplings, and a coupling with a changing step if it does not support
-/// one.
+/// Box and limits of frictions of remembered loads are those of histories of constant order.
+static Scheme scheme_of_coupling(Scheme scheme)
+{
+  if (!scheme.remembers) return scheme;
+  scheme.formulation = Formulation::SECOND;
+  scheme.rows = SECOND_PAPER;
+  scheme.passes = 2;
+  return scheme;
+}
+
 std::unique_ptr<Coupling> GearQuat::make_coupling(LAMMPS *lmp, const Fix *fix,
                                                   const Arguments &args, Bodies &bodies,
                                                   const Sites &sites)
 {
   if (args.pressure.any())
     return std::make_unique<Barostat>(lmp, fix, bodies, sites, args.thermostat, args.pressure,
-                                      args.scheme);
+                                      scheme_of_coupling(args.scheme));
   if (args.isokinetic != Isokinetic::NONE)
     return std::make_unique<IsokineticConstraint>(lmp, bodies, args.scheme, args.isokinetic,
                                                   args.rescale);
   if (args.thermostat.damp > 0.0)
-    return std::make_unique<Thermostat>(lmp, fix, bodies, args.thermostat, args.scheme);
+    return std::make_unique<Thermostat>(lmp, fix, bodies, args.thermostat,
+                                        scheme_of_coupling(args.scheme));
   return nullptr;
 }
 
@@ -100,9 +109,8 @@ void Step::gather(double **f, double **torque)
 
 void Step::choose_next()
 {
-  const int values = scheme().values();
   const double next = tolerance->choose(coupling ? coupling->longest_step() : HUGE_VAL);
-  if (scheme().values() != values) make_integrator();
+  make_integrator();
   time_step.change(next);
   tolerance->order_output();
 }
@@ -123,6 +131,10 @@ void Step::check_other_fixes()
 
 void Step::predict(double **f)
 {
+  if (tolerance) {
+    tolerance->prepare();
+    make_integrator();
+  }
   const double h = integrator->step();
   time_step.begin();
   find_limits(h);
@@ -229,9 +241,8 @@ void Step::shorten()
 {
   bodies.put_back_histories();
   if (coupling) coupling->put_back();
-  const int values = scheme().values();
-  tolerance->shorten_values();
-  if (scheme().values() != values) make_integrator();
+  tolerance->shorten_loads();
+  make_integrator();
   tolerance->shorten_step();
   bodies.keep_histories();
   if (coupling) coupling->keep();
@@ -272,6 +283,7 @@ void Step::find_limits(double h)
     longest = std::max(longest, follows ? HUGE_VAL : domain->prd[k]);
   }
   blowup.limits = MotionLimits(h, longest);
+  if (tolerance) blowup.limits.rate2 = HUGE_VAL;    // turns are exact
 }
 
 /// Tests a corrected state.
@@ -307,7 +319,8 @@ bool Step::is_due(const std::vector<int> &periods) const
 
 void Step::make_integrator()
 {
-  integrator = std::make_unique<Integrator>(scheme(), length());
+  integrator = std::make_unique<Integrator>(tolerance ? tolerance->integrator()
+                                                      : Integrator(scheme(), length()));
 }
 
 void Step::set_coupling(std::unique_ptr<Coupling> other)

@@ -228,24 +228,22 @@ void Thermostat::advance(int chain, double twice_kinetic, double h, int values)
              twice_kinetic / (target.freedoms * target.kt), words.damp);
 }
 
-Chain::LeftOut Thermostat::left_out(double h, int values) const
+/// The effect of the errors of the chains in this step on bodies in thermal motion: an error d of
+/// the friction causes the error h d v of a velocity v.  A cold body is insensitive to the friction,
+/// so its errors do not show whether the chains are accurate.
+void Thermostat::errors(double h, int values, const Include &include) const
 {
-  Chain::LeftOut all;
-  for (size_t c = 0; c < chains.size(); ++c) {
-    const Chain::LeftOut one = chains[c].left_out(target_of(c, 0.0, h), h, values);
-    all = {std::max(all.fewer, one.fewer), std::max(all.same, one.same),
-           std::max(all.more, one.more)};
+  const int terms = std::min(values, SECOND_MOST);
+  double most = 0.0;
+  for (size_t c = 0; c < chains.size(); ++c)
+    most = std::max(most, chains[c].left_out(target_of(c, 0.0, h), h, terms));
+  most *= adams_moulton(terms).value();
+  StepErrors found;
+  found.energy = std::fabs(h) * 3.0 * line.kt * most;
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    found.length = h * h * std::sqrt(3.0 * line.kt / bodies.rigid_of(ibody).mass) * most;
+    include(found);
   }
-  return all;
-}
-
-/// The errors of the chains are weighted as if every body had the target temperature.
-void Thermostat::errors(const VariableOrder &order, double h, int values,
-                        const Include &include) const
-{
-  const Chain::LeftOut most = left_out(h, values);
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    include(order.errors_of_chain(most, line.kt, bodies.rigid_of(ibody).mass, h));
 }
 
 void Thermostat::note_step(double h)

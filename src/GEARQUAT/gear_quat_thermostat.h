@@ -68,8 +68,7 @@ class Thermostat : public Coupling {
   void keep() override { kept = chains; }
   void put_back() override { chains = kept; }
   double longest_step() const override;
-  void errors(const VariableOrder &order, double h, int values,
-              const Include &include) const override;
+  void errors(double h, int values, const Include &include) const override;
   Cause instability(double h) const override;
 
   void begin_start(const StartNodes &nodes) override;
@@ -158,7 +157,6 @@ class Thermostat : public Coupling {
   void watch_cold(double h);
   void watch_friction(double h);
   double part_of_limit(double h) const;
-  Chain::LeftOut left_out(double h, int values) const;
   void tell_freedoms();
   /// Rank 0 prints the message if it differs from the last one.
   void tell_once(std::string &last, const std::string &message) const;

@@ -25,20 +25,13 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-static Scheme with_trial_row(Scheme scheme)
-{
-  scheme.trial = true;
-  return scheme;
-}
-
 Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
                      double every_time, const Fleet &fleet, Bodies &bodies, TimeStep &time_step) :
     Pointers(lmp),
-    fix(fix), fleet(fleet), bodies(bodies), time_step(time_step), present(with_trial_row(scheme)),
-    control(control), every_time(every_time), order(present), repeat(lmp, fix), predicted(bodies),
-    failed()
+    fix(fix), fleet(fleet), bodies(bodies), time_step(time_step),
+    present(RememberedLoads::scheme(scheme.compensate)), control(control), every_time(every_time),
+    remembered(scheme.compensate), repeat(lmp, fix), predicted(bodies), failed()
 {
-  record.values = present.values();
   if (control.energy) this->control.eps /= force->mvv2e;
 }
 
@@ -75,56 +68,21 @@ void Tolerance::refuse_scene() const
    start
 ------------------------------------------------------------------------- */
 
-Scheme Tolerance::scheme_of_start() const
-{
-  Scheme start = present;
-  start.trial = false;
-  start.rows = control.most + 1;
-  return start;
-}
-
-void Tolerance::begin(bool full)
+void Tolerance::begin()
 {
   record = Record();
-  steady = Steady();
-  steady.repeat = Steady::FOR_LONG;
-  set_values(full ? control.most : control.fewest);
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    double *rows = bodies.history(ibody);
-    double *above = rows + present.values() * present.width();
-    if (full && present.carries()) {    // the row above the most is the trial row; carries are zero
-      std::copy_n(above, present.width(), rows + present.trial_row());
-      std::fill_n(above, present.carries() * present.width(), 0.0);
-    }
-  }
-}
-
-/// The error of the first step, estimated from the rows of bodies on this rank.
-double Tolerance::first_error() const
-{
-  const Integrator integrator(present, update->dt);
-  double largest = 0.0;
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const Body &body = bodies.body_at(ibody);
-    const StepMeasures one =
-        order.measures(integrator, body.rigid, body.reach(), bodies.load_of(ibody),
-                       bodies.axes(ibody), bodies.history(ibody));
-    largest = std::max(largest, control.measured(one).same);
-  }
-  return largest;
+  growing = Growth();
+  remembered.begin();
+  present.rows = remembered.values();
 }
 
 /// Rank 0 warns if no step is short enough for eps.  Collective.
 void Tolerance::warn_of_rounding() const
 {
-  const Integrator integrator(present, update->dt);
+  const Integrator integrator = this->integrator();
   double largest = 0.0;
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const Body &body = bodies.body_at(ibody);
-    const auto one = order.rounding(integrator, body.rigid, body.reach(), bodies.load_of(ibody),
-                                    bodies.axes(ibody), bodies.history(ibody));
-    largest = std::max(largest, control.energy ? one.energy : one.length);
-  }
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+    largest = std::max(largest, control.error(rounding(integrator, ibody, bodies.load_of(ibody))));
   largest = over_ranks(MPI_MAX, largest, world);
   if (control.eps >= largest || comm->me != 0) return;
   error->warning(
@@ -137,7 +95,7 @@ void Tolerance::warn_of_rounding() const
 
 /// The first step of histories with the present loads alone.  Forces are assumed to change by their
 /// own magnitude while a body moves by its size, at its speed or by its acceleration from rest.
-double Tolerance::first_step_of_low_order() const
+double Tolerance::first_step() const
 {
   double least = std::numeric_limits<double>::infinity();
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
@@ -150,7 +108,7 @@ double Tolerance::first_step_of_low_order() const
     const double acceleration =
         length(bodies.load_of(ibody).force) / body.rigid.mass + reach * length(turn);
     const double jerk = acceleration * std::max(speed / size, std::sqrt(acceleration / size));
-    if (jerk > 0.0) least = std::min(least, control.low_order_step(jerk, speed, body.rigid.mass));
+    if (jerk > 0.0) least = std::min(least, control.first_step(jerk, speed, body.rigid.mass));
   }
   return over_ranks(MPI_MIN, least, world);
 }
@@ -166,16 +124,12 @@ void Tolerance::bound_first_step(double permitted)
     time_step.change_begun(std::copysign(size, update->dt));
 }
 
-void Tolerance::shorten_first_step(bool full)
+void Tolerance::shorten_first_step()
 {
   warn_of_rounding();
-  double here[2] = {full ? first_error() : 0.0, largest_speed()};
-  const auto all = over_ranks(MPI_MAX, here, world);
-  const double largest = all[0];
-  double size = std::fabs(update->dt) *
-      std::min(1.0, StepControl::SAFETY * control.allowed(largest, present.values()));
-  if (!full) size = std::min(size, first_step_of_low_order());
-  size = std::max(control.shortest, std::min(size, farthest_step(all[1])));
+  const double speed = over_ranks(MPI_MAX, largest_speed(), world);
+  double size = std::min({std::fabs(update->dt), first_step(), farthest_step(speed)});
+  size = std::max(control.shortest, size);
   size = std::fabs(even(std::copysign(size, update->dt), time_step.beginning()));
   if (size >= std::fabs(update->dt)) return;
   if (const Fix *other = integrated_before(first_mover())) {
@@ -216,25 +170,16 @@ const Fix *Tolerance::integrated_before(const Fix *begins) const
 }
 
 /* ----------------------------------------------------------------------
-   length and values
+   length and loads
 ------------------------------------------------------------------------- */
 
-void Tolerance::set_values(int values)
+void Tolerance::change_loads(int loads)
 {
-  present.rows = values;
-  order = VariableOrder(present);
-  record.values = values;
-  steady.values = 0;
-}
-
-void Tolerance::change_values(int values)
-{
-  while (present.values() != values) {
-    const bool more = values > present.values();
-    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-      more ? order.add_row(bodies.history(ibody)) : order.drop_row(bodies.history(ibody));
-    set_values(present.values() + (more ? 1 : -1));
-  }
+  while (remembered.loads() != loads)
+    remembered.change(loads > remembered.loads(), update->dt, [this](const auto &act) {
+      for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) act(bodies.history(ibody));
+    });
+  present.rows = remembered.values();
 }
 
 void Tolerance::keep_step()
@@ -278,10 +223,10 @@ double Tolerance::element(int n) const
       return record.smallest;
     case MEAN:
       return record.steps > 0.0 ? record.time / record.steps : 0.0;
-    case VALUES:
-      return present.values();
-    case MEAN_VALUES:
-      return record.steps > 0.0 ? record.values_sum / record.steps : 0.0;
+    case LOADS:
+      return remembered.loads();
+    case MEAN_LOADS:
+      return record.steps > 0.0 ? record.loads / record.steps : 0.0;
     case LARGEST_ERROR:
       return record.largest;
     case REPEATED:
@@ -297,7 +242,6 @@ double Tolerance::element(int n) const
 
 void Tolerance::fields(Fields &v)
 {
-  v(record);
-  if (v.reads()) set_values((int) record.values);
-  v(steady);
+  v(record, growing, remembered);
+  present.rows = remembered.values();
 }

@@ -42,11 +42,6 @@ static constexpr double PART_UNSEEN = 0.5;
 
 static constexpr int MOST_TRIES = 40;
 
-// steps that belong to the start; a rarely shorter step, in relative standard deviations below the
-// mean; and the smallest excess of fixed steps of that length with which the control pays
-
-static constexpr double UNSETTLED = 100.0, SPREADS = 2.0, LITTLE_GAIN = 0.6, NEAR_EPS = 0.1;
-
 // a smaller part of a step counts as no time
 
 static constexpr double ROUNDING_OF_TIME = 1.0e-6;
@@ -67,7 +62,6 @@ void Tolerance::begin_step()
 void Tolerance::begin_run()
 {
   repeat.begin_run();
-  settled = Settled();
   const double fastest = over_ranks(MPI_MAX, largest_speed(), world);
   const double farthest = farthest_step(fastest);
   const bool moves_limit = fastest > 0.0 && farthest >= control.shortest;
@@ -80,27 +74,33 @@ void Tolerance::begin_run()
 
 Correction Tolerance::correct(const Integrator &integrator, int ibody, const Load &load)
 {
-  StepMeasures one;
+  StepErrors one;
   const Body &body = bodies.body_at(ibody);
-  const Correction correction = order.correct(integrator, body.rigid, body.reach(), load,
-                                              bodies.axes(ibody), bodies.history(ibody), one);
-  include(one);
+  const Correction correction = remembered.correct(integrator, body.rigid, body.reach(), load,
+                                                   bodies.axes(ibody), bodies.history(ibody), one);
+  include(control.counted(one, rounding(integrator, ibody, load)));
   return correction;
 }
 
-void Tolerance::include(StepMeasures of_body)
+StepErrors Tolerance::rounding(const Integrator &integrator, int ibody, const Load &load) const
 {
-  of_body = control.counted(of_body);
-  double &same = control.energy ? of_body.energy.same : of_body.length.same;
-  if (!std::isfinite(same)) same = std::numeric_limits<double>::infinity();
-  errors.include(of_body);
+  const Body &body = bodies.body_at(ibody);
+  return RememberedLoads::rounding(integrator, body.rigid, body.reach(), load,
+                                   bodies.history(ibody));
+}
+
+void Tolerance::include(StepErrors one)
+{
+  double &error = control.energy ? one.energy : one.length;
+  if (!std::isfinite(error)) error = std::numeric_limits<double>::infinity();
+  errors.include(one);
 }
 
 void Tolerance::note_prediction()
 {
   predicted.begin(bodies.nmoved());
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    predicted[ibody] = order.last_row(bodies.history(ibody));
+    predicted[ibody] = RememberedLoads::accelerations(bodies.history(ibody));
 }
 
 void Tolerance::note_correction(const Integrator &integrator, const Coupling &coupling)
@@ -108,10 +108,13 @@ void Tolerance::note_correction(const Integrator &integrator, const Coupling &co
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list) {
       const Body &body = bodies.body_at(ibody);
-      include(order.errors(integrator, body.rigid, body.reach(), bodies.acting(ibody),
-                           bodies.axes(ibody), predicted[ibody], bodies.history(ibody)));
+      const Load load = bodies.acting(ibody);
+      const StepErrors one =
+          remembered.errors(integrator, body.rigid, body.reach(), load, bodies.axes(ibody),
+                            predicted[ibody], bodies.history(ibody));
+      include(control.counted(one, rounding(integrator, ibody, load)));
     }
-  coupling.errors(order, update->dt, integrator.values(), [this](const StepMeasures &one) {
+  coupling.errors(update->dt, integrator.values(), [this](const StepErrors &one) {
     include(one);
   });
 }
@@ -152,28 +155,23 @@ double Tolerance::farthest_step(double speed) const
 
 bool Tolerance::accepts()
 {
-  double here[] = {errors.length.fewer,
-                   errors.length.same,
-                   errors.length.more,
-                   errors.energy.fewer,
-                   errors.energy.same,
-                   errors.energy.more,
-                   bodies.fresh.empty() ? 0.0 : 1.0,
+  double here[] = {errors.length,  errors.energy, errors.fewer,
+                   errors.same,    errors.more,   bodies.fresh.empty() ? 0.0 : 1.0,
                    largest_speed()};
   const auto all = over_ranks(MPI_MAX, here, world);
-  errors = {{all[0], all[1], all[2]}, {all[3], all[4], all[5]}, {}};
-  fresh = all[6] != 0.0;
-  speed = all[7];
+  errors = {all[0], all[1], all[2], all[3], all[4]};
+  fresh = all[5] != 0.0;
+  speed = all[6];
   if (repeat.possible() && control.fails(step_error(), update->dt) && tries < MOST_TRIES) {
     ++tries;
     record.repeated += 1.0;
-    failed = control.repeat(step_error(), update->dt, present.values(), steady);
-    steady.repeat = 0;
-    errors = StepMeasures();
+    failed = control.repeat(step_error(), update->dt, remembered.loads(), growing);
+    errors = StepErrors();
     return false;
   }
   if (!std::isfinite(step_error()) || tries == MOST_TRIES) refuse_lost();
   if (record.steps == 0.0 && tries > 0) tell_of_first_step(begun_with);
+  remembered.conclude(update->dt);
   return true;
 }
 
@@ -209,14 +207,13 @@ void Tolerance::refuse_frozen() const
   refuse("tolerance", std::fabs(update->dt), "use a larger tolerance, or dtmin");
 }
 
-void Tolerance::shorten_values()
+void Tolerance::shorten_loads()
 {
-  if (failed.values != present.values()) change_values(failed.values);
+  change_loads(failed.loads);
 }
 
 void Tolerance::shorten_step()
 {
-  steady.step = 0;
   time_step.change_begun(failed.step);
   refuse_frozen();
 }
@@ -229,13 +226,13 @@ double Tolerance::shown(double error) const
 double Tolerance::choose(double permitted)
 {
   const double step = update->dt;
-  const int values = present.values();
-  note_step(std::fabs(step), values);
-  auto next = control.next(control.measured(errors), step, values, steady,
-                           std::min(permitted, farthest_step(speed)));
-  if (fresh) {    // rows above are zero in a fresh history
-    next.values = control.fewest;
-    next.step = std::copysign(std::min(std::fabs(next.step), first_step_of_low_order()), step);
+  note_step(std::fabs(step));
+  auto next =
+      control.next(errors, step, remembered, growing, std::min(permitted, farthest_step(speed)));
+  if (fresh) {    // fresh histories have the present load only
+    next.loads = 1;
+    growing = Growth();
+    next.step = std::copysign(std::min(std::fabs(next.step), first_step()), step);
   }
   if (next.held) {
     record.held += 1.0;
@@ -247,12 +244,11 @@ double Tolerance::choose(double permitted)
           update->ntimestep, control.shortest);
     warned_held = true;
   }
-  errors = StepMeasures();
+  errors = StepErrors();
+  change_loads(next.loads);
+  if (fresh) remembered.begin();
   fresh = false;
-  if (next.values != values) change_values(next.values);
-  next.step = even(next.step, time_step.end());
-  if (std::fabs(next.step - step) > ROUNDING_OF_TIME * std::fabs(step)) steady.step = 0;
-  return next.step;
+  return even(next.step, time_step.end());
 }
 
 /// The next time at which a step has to end, infinite if there is none: a multiple of every_time,
@@ -310,37 +306,15 @@ void Tolerance::order_output()
 }
 
 /// Adds the present step to the sums for the outputs.
-void Tolerance::note_step(double size, int values)
+void Tolerance::note_step(double size)
 {
   record.smallest = record.steps == 0.0 ? size : std::min(record.smallest, size);
   record.steps += 1.0;
   record.time += size;
-  record.values_sum += values;
+  record.loads += remembered.loads();
   record.largest = std::max(record.largest, step_error() / control.eps);
-  record.last_length = errors.length.same;
-  record.last_energy = errors.energy.same;
-  steady.count();
-  if (record.steps <= UNSETTLED) return;
-  settled.steps += 1.0;
-  settled.time += size;
-  settled.squares += size * size;
-  settled.largest = std::max(settled.largest, step_error() / control.eps);
-}
-
-void Tolerance::end_run()
-{
-  const double n = settled.steps, mean = settled.time / n;
-  const double spread = std::sqrt(std::max(0.0, settled.squares / n - mean * mean)) / mean;
-  const double shortest = mean * std::exp(-SPREADS * spread);
-  const double more = mean / shortest - 1.0;
-  const bool by_error = settled.largest > NEAR_EPS;    // not by the skin, dtmax or Tdamp
-  if (by_error && n > UNSETTLED && more < LITTLE_GAIN && comm->me == 0)
-    utils::logmesg(lmp,
-                   "Fix gear/quat tolerance: the step has changed little, and step control gains "
-                   "little here: a fixed time step of {:.3g} without tolerance needs {:.0f} % more "
-                   "steps with Gear's coefficients, and tuned ones permit longer steps\n",
-                   shortest, 100.0 * more);
-  settled = Settled();
+  record.last_length = errors.length;
+  record.last_energy = errors.energy;
 }
 
 /* ----------------------------------------------------------------------

@@ -206,12 +206,13 @@ inline int Scheme::order() const
 
 /// Coefficients of all columns, and the weight of residuals in the local error.
 struct CorrectorCoefficients {
-  using Array = std::array<double, MAX_VALUES>;
+  using Array = std::array<double, MOST_ROWS>;
 
-  Array c = {};           ///< first: of all columns, which have equations of the first order
-  double weight2;         ///< of the residuals of positions and quaternions, squared
-  double moment = 0.0;    ///< momentum: see SteadyDeviations
+  Array c = {};            ///< first: of all columns, which have equations of the first order
+  double weight2 = 0.0;    ///< of the residuals of positions and quaternions, squared
+  double moment = 0.0;     ///< momentum: see SteadyDeviations
 
+  CorrectorCoefficients() = default;
   /// Throws std::domain_error if the scheme is tuned and has a number of values without a tuned
   /// set.
   explicit CorrectorCoefficients(const Scheme &scheme)

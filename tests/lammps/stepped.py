@@ -5,7 +5,7 @@ import pytest
 from scenes import frames, placed
 
 ELEMENTS = [f"f_move[{k}]" for k in range(9, 19)]
-NEXT, SMALLEST, MEAN, VALUES, MEAN_VALUES, LARGEST, HELD, REPEATED, LENGTH, ENERGY = ELEMENTS
+NEXT, SMALLEST, MEAN, LOADS, MEAN_LOADS, LARGEST, HELD, REPEATED, LENGTH, ENERGY = ELEMENTS
 
 
 def tables(result):
@@ -40,7 +40,7 @@ TOWARDS = [(2, 0, 0)] * 3 + [(-2, 0, 0)] * 3
 
 def meeting(eps, pair, run, bodies=TWO, velocities=TOWARDS, before="", words=""):
     settings = dict(style="full", boundary="p p p", box="-30 30 -10 10 -10 10")
-    settings |= dict(dt=0.005, thermo=1, columns=f"{NEXT} {VALUES} {LARGEST}", run=run)
+    settings |= dict(dt=0.005, thermo=1, columns=f"{NEXT} {LOADS} {LARGEST}", run=run)
     settings["before"] = f"{before}\npair_style {pair}\npair_coeff * * 1.0 1.0"
     fix = f"gear/quat molecule tolerance {eps} {words}"
     return placed(bodies, velocities, fix=fix, **settings)

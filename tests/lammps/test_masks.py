@@ -20,7 +20,7 @@ HELD = "force 1 off off off torque 1 off off on"
 
 def rotor(lmp, formulation="second", masks=HELD, dt=0.01, style="", ranks=1):
     """Positions and velocities at the end, shape (6, 6), and the thermo table."""
-    fix = f"gear/quat single formulation {formulation} {masks}"
+    fix = f"gear/quat single {f'formulation {formulation}' if formulation else ''} {masks}"
     sites = held_rotor(0.0)[:, :3]
     settings = dict(before=PULL_OF_ONE, after=style, dt=dt, steps=round(4.0 / dt))
     deck = placed([sites], fix=fix, **settings)
@@ -55,8 +55,8 @@ def test_a_held_body_spins_as_a_pendulum(lmp_tree, formulation):
     assert np.abs(free - exact).max() > 0.1
 
 
-def test_with_a_step_that_follows_the_error(lmp_tree, formulation):
-    end, table = rotor(lmp_tree, formulation, f"{HELD} tolerance 1e-13")
+def test_with_a_step_that_follows_the_error(lmp_tree):
+    end, table = rotor(lmp_tree, None, f"{HELD} tolerance 1e-13")
     time = table["Time"][-1]
     assert time > 2 * 4.0  # the step has grown
     assert np.abs(end - held_rotor(time)).max() < 1e-10

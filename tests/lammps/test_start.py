@@ -293,4 +293,4 @@ def test_tolerance_beside_another_fix(lmp_tree):
     result, _ = two_fixes(lmp_tree, 10, 0.5, "corrector gear values 8", "tolerance 1e-9")
     assert "first step" in result.stdout and result.output.count("WARNING") == 1
     assert "nothing controls the errors of the bodies of fix" in result.output
-    assert "start of order 9 and 11 from" in result.stdout
+    assert "start with known forces only (order 2), because fix move (gear/quat) moves atoms" in result.stdout

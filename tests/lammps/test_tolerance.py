@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from running import EXAMPLES
 from scenes import UNITS, assigned, one_after_the_other, restarted, two_molecules, water, water_data, whole_deck
-from stepped import ELEMENTS, HELD, INSERTED, LARGEST, MEAN, MEAN_VALUES, NEXT, REPEATED, SMALLEST, VALUES, meeting, off, tables
+from stepped import ELEMENTS, HELD, INSERTED, LARGEST, LOADS, MEAN, MEAN_LOADS, NEXT, REPEATED, SMALLEST, meeting, off, tables
 
 COLUMNS = " ".join(ELEMENTS)
 
@@ -21,9 +21,9 @@ def case1(run="run ${steps}", before="", **settings):
     return assigned(known) + text.replace("fix move body", f"{before}\nfix move body")
 
 
-def test_the_energy_error_follows_eps(lmp_tree, formulation):
+def test_the_energy_error_follows_eps(lmp_tree):
     eps = [1e-8, 1e-10, 1e-12]
-    settings = dict(until=1000, steps=100000, formulation=formulation)
+    settings = dict(until=1000, steps=100000)
     decks = [case1(tolerance=e, **settings) for e in eps]
     runs = tables(lmp_tree.succeed(one_after_the_other(decks)))
     errors = [off(run) for run in runs]
@@ -32,32 +32,29 @@ def test_the_energy_error_follows_eps(lmp_tree, formulation):
     for e, run in zip(eps, runs):
         assert 1000 <= run["Time"][-1] < 1001
         assert run[LARGEST][-1] <= 1  # eps
-        assert 0 < run[REPEATED][-1] < 0.05 * len(run["Step"])
+        assert 0 < run[REPEATED][-1] < 0.1 * len(run["Step"])
         assert run[HELD][-1] == 0
-    assert runs[-1][VALUES][-1] >= 8
+    assert runs[-1][LOADS][-1] >= 8
     assert len(runs[0]["Step"]) < len(runs[2]["Step"])
 
     # without step control, a fixed step of the mean length
     mean = runs[-1][MEAN][-1]
-    deck = case1(tolerance=0, dt=mean, steps=int(1000 / mean), more="", formulation=formulation)
+    deck = case1(tolerance=0, dt=mean, steps=int(1000 / mean), more="")
     assert off(tables(lmp_tree.succeed(deck))[0]) > 100 * errors[-1]
 
 
 def test_outputs_are_those_of_the_steps(lmp):
     (whole,) = tables(lmp.succeed(case1(steps=300)))
     steps = np.diff(whole["Time"])
-    assert steps[0] == pytest.approx(0.1, rel=1e-12)
     again = np.diff(whole[REPEATED])[1:] > 0
     assert steps[1:][~again] == pytest.approx(whole[NEXT][1:-1][~again], rel=1e-11)
     assert (steps[1:][again] < 0.95 * whole[NEXT][1:-1][again]).all() and again.any()
     assert whole[SMALLEST][-1] == pytest.approx(steps.min(), rel=1e-11)
     assert whole[MEAN][-1] == pytest.approx(steps.mean(), rel=1e-12)
-    assert whole[MEAN_VALUES][-1] == pytest.approx(
-        np.append(9, whole[VALUES][1:-1]).mean(), rel=0.01
-    )
+    assert whole[LOADS][0] == 1 and whole[LOADS].max() >= 12
+    assert whole[MEAN_LOADS][-1] == pytest.approx(whole[LOADS][:-1].mean(), rel=0.01)
     assert steps.max() / steps.min() > 2
-    assert 1.1 < (steps[1:] / steps[:-1]).max() < 25 ** (1 / 3)
-    assert (np.diff(steps) == 0).mean() > 0.3  # rows are not rescaled in every step
+    assert 1.25 < (steps[20:] / steps[19:-1]).max() < 1.3 * (1 + 1e-9)
     # the same in two runs
     first, second = tables(lmp.succeed(case1(run="run 200\nrun 100")))
     halves = [*first["v_total"], *second["v_total"][1:]]
@@ -72,13 +69,10 @@ def test_a_first_step_that_is_too_long_is_made_shorter(lmp_tree):
     assert off(long) < 1e-8
     assert long[LARGEST][-1] <= 1
 
-    (zero,) = tables(lmp_tree.succeed(case1(start="zero", steps=100)))
-    assert zero[VALUES][1] == 4 and zero[VALUES][-1] > 5
-
 
 def test_limits_of_the_step(lmp_tree):
     def limited(words):
-        deck = case1(steps=400).replace("molecule formulation", f"molecule {words} formulation")
+        deck = case1(steps=400).replace("gear/quat molecule", f"gear/quat molecule {words}")
         result = lmp_tree.succeed(deck)
         return tables(result)[0], result.output
 
@@ -125,11 +119,13 @@ def test_a_restart_goes_on_bit_for_bit(lmp_tree, ranks):
 
 
 def test_ranks_agree_to_rounding(lmp_tree):
-    """The step depends on high differences, which amplify rounding."""
-    deck = "processors 1 * 1\n" + case1(steps=100, tolerance=1e-8)
-    one, two = (tables(lmp_tree.succeed(deck, ranks=ranks))[0] for ranks in (1, 2))
-    for column in ("Time", "c_centre[1]", "c_centre[2]", "c_centre[3]", "v_total"):
-        assert two[column] == pytest.approx(one[column], rel=1e-7, abs=1e-7)
+    """At equal times, because the step depends on high differences, which amplify rounding."""
+    deck = case1(until=20, steps=1000).replace("gear/quat molecule", "gear/quat molecule every/time 5")
+    deck = "processors 1 * 1\n" + deck
+    runs = [tables(lmp_tree.succeed(deck, ranks=ranks))[0] for ranks in (1, 2)]
+    for column in ("c_centre[1]", "c_centre[2]", "c_centre[3]", "v_total"):
+        one, two = ([run[column][np.searchsorted(run["Time"], t - 1e-9)] for t in (5, 10, 15, 20)] for run in runs)
+        assert two == pytest.approx(one, rel=1e-9, abs=1e-9)
 
 
 FALL = """
@@ -187,11 +183,11 @@ def test_a_tolerance_below_rounding_is_warned_of(lmp_tree, measure):
 
 @pytest.mark.parametrize("eps", ["1e-15 length", "1e-9 energy"])
 @pytest.mark.parametrize("distance", [0.02, 0.002])
-def test_a_near_singular_encounter_keeps_the_energy(lmp_tree, distance, eps, formulation):
+def test_a_near_singular_encounter_keeps_the_energy(lmp_tree, distance, eps):
     tolerance, measure = eps.split()
 
     def run(**settings):
-        words = dict(distance=distance, formulation=formulation, tolerance=tolerance)
+        words = dict(distance=distance, tolerance=tolerance)
         deck = EXAMPLES / "hard" / "encounter" / "in.encounter"
         words["measure"] = measure
         return tables(lmp_tree.succeed(deck, words | settings))[0]
@@ -205,8 +201,8 @@ def test_a_near_singular_encounter_keeps_the_energy(lmp_tree, distance, eps, for
 
 
 @pytest.mark.parametrize("eps", ["", "1.5e-11"])
-def test_case_1_for_long(lmp_tree, eps, formulation):
-    variables = dict(formulation=formulation, shift="3e-9", until=2500)
+def test_case_1_for_long(lmp_tree, eps):
+    variables = dict(shift="3e-9", until=2500)
     if eps:
         variables["tolerance"] = eps
     deck = EXAMPLES / "hard" / "long" / "in.long"
@@ -240,7 +236,6 @@ def test_a_collision_out_of_free_flight(lmp_tree):
         # force times eps in each step, and the kink of the force where it sets in
         assert off(run, "TotEng") < 50 * e * len(steps) + 1e-6
         assert 2.0 * steps.max() < 0.25 * 0.3 * 1.001  # a quarter of the skin
-        assert (run[VALUES][run["Time"] < 5] == 10).all()  # until they collide
         assert run[LARGEST][-1] <= 1
     for run in runs[3:]:  # a jump of force and energy causes an error of its size
         assert run["Time"][-1] >= 12.5
@@ -304,10 +299,10 @@ def test_eps_is_a_length(lmp_tree):
         scale = UNITS[units]
         data = water_data(lmp_tree.folder / f"data.{units}", units=units)
         fix = f"gear/quat molecule tolerance {1e-7 * scale['length']:g}"
-        deck = water(data, fix, dt=0.5, steps=60, units=units, columns="time f_move[12]")
+        deck = water(data, fix, dt=0.5, steps=60, units=units, columns=f"time {MEAN_LOADS}")
         (run,) = tables(lmp_tree.succeed(deck))
         times[units] = run["Time"][-1] / scale["time"]
-        assert run[VALUES][-1] > 4
+        assert run[MEAN_LOADS][-1] > 3
     assert times["real"] > 20.0
     for units, time in times.items():
         assert time == pytest.approx(times["real"], rel=1e-3), times

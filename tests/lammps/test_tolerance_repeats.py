@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from running import EXAMPLES
 from scenes import frames, one_after_the_other, placed, water, water_data
-from stepped import ENERGY, HELD, INSERTED, LARGEST, LENGTH, MEAN, NEXT, REPEATED, SMALLEST, TWO, VALUES, agree_on_ranks, meeting, off, tables
+from stepped import ENERGY, HELD, INSERTED, LARGEST, LENGTH, MEAN, NEXT, REPEATED, SMALLEST, TWO, LOADS, agree_on_ranks, meeting, off, tables
 
 SMOOTH = "lj/charmm/coul/charmm 4.0 6.0"
 UNTIL = """
@@ -28,9 +28,9 @@ fix_modify move virial yes
 
 def scene(tolerance, after="", until=8.0, pair=SMOOTH, columns="", **settings):
     """Two molecules that collide after free flight; tolerance: its values."""
-    more = f"{NEXT} {VALUES} {LARGEST} {REPEATED} {LENGTH} {ENERGY} {columns}"
+    more = f"{NEXT} {LOADS} {LARGEST} {REPEATED} {LENGTH} {ENERGY} {columns}"
     deck = meeting(tolerance, pair, UNTIL.format(until), **settings)
-    return deck.replace(f"{NEXT} {VALUES} {LARGEST}", more).replace(
+    return deck.replace(f"{NEXT} {LOADS} {LARGEST}", more).replace(
         "fix_modify move energy yes", f"fix_modify move energy yes\n{after}"
     )
 
@@ -65,12 +65,9 @@ def test_an_energy_is_an_energy(lmp_tree):
     assert run[ENERGY].max() > 1e-9
 
 
-@pytest.mark.parametrize("formulation", ["first", "second", "momentum"])
-def test_forces_that_jump(lmp_tree, formulation):
+def test_forces_that_jump(lmp_tree):
     """At a cutoff without a shift the energy jumps, and is restored when the bodies separate."""
-    run = tables(
-        lmp_tree.succeed(scene("1e-9 energy", pair="lj/cut 2.5", until=12.5, words=f"formulation {formulation}"))
-    )[0]
+    (run,) = tables(lmp_tree.succeed(scene("1e-9 energy", pair="lj/cut 2.5", until=12.5)))
     apart = run["PotEng"] == 0
     assert apart[0] and run["PotEng"].min() < -1 and abs(run["PotEng"][-1]) < 1e-6
     assert run[LARGEST][-1] <= 1
@@ -189,7 +186,7 @@ pair_coeff 1 1 {depth} {sigma}
 timestep {0.005 * tau}
 fix move all gear/quat molecule tolerance {eps}
 fix_modify move energy yes
-thermo_style custom step time pe ke etotal {NEXT} {VALUES} {LARGEST} {REPEATED} {LENGTH} {ENERGY}
+thermo_style custom step time pe ke etotal {NEXT} {LOADS} {LARGEST} {REPEATED} {LENGTH} {ENERGY}
 thermo_modify norm no format float %.17g
 thermo 1
 {UNTIL.format(until * tau)}
@@ -199,8 +196,8 @@ thermo 1
 @pytest.mark.parametrize("words", ["1e-9 length {0}", "1e-8 energy {1}"])
 def test_two_atoms_fly_alike_in_all_units(lmp_tree, words):
     """In units of sigma or of the depth, eps is the same number in all of LAMMPS' unit styles."""
-    decks = [argon(units, words.format(*ARGON[units]), skin=0.6) for units in ARGON]
-    decks.append(argon("lj", words.split()[0] + " " + words.split()[1], skin=0.6))
+    decks = [argon(units, f"{words.format(*sizes)} every/time {0.5 * sizes[3]}", skin=0.6) for units, sizes in ARGON.items()]
+    decks.append(argon("lj", f"{words.split()[0]} {words.split()[1]} every/time 0.5", skin=0.6))
     runs = tables(lmp_tree.succeed(one_after_the_other(decks)))
     scaled = []
     for run, (sigma, depth, _, tau) in zip(runs, [*ARGON.values(), ARGON["lj"]], strict=True):
@@ -212,9 +209,10 @@ def test_two_atoms_fly_alike_in_all_units(lmp_tree, words):
     metal, si, lj, plain = scaled
     assert {key: a.tolist() for key, a in plain.items()} == {key: a.tolist() for key, a in lj.items()}
     for other in (metal, si):  # their constants have seven digits
-        assert len(other["Time"]) == len(lj["Time"])
-        assert other["Time"] == pytest.approx(lj["Time"], rel=1e-4)
-        assert other["PotEng"] == pytest.approx(lj["PotEng"], abs=1e-4)
+        assert len(other["Time"]) == pytest.approx(len(lj["Time"]), rel=0.05)
+        for time in np.arange(0.5, 5.1, 0.5):  # steps end there
+            here, there = (np.argmin(np.abs(run["Time"] - time)) for run in (other, lj))
+            assert other["PotEng"][here] == pytest.approx(lj["PotEng"][there], abs=1e-4)
     # with another unit the tolerance differs
     measure, unit = words.split()[1], 10.0
     (loose,) = tables(lmp_tree.succeed(argon("lj", f"{words.split()[0]} {measure} {unit}", skin=0.6)))
@@ -240,7 +238,7 @@ def test_free_flight_for_a_million(lmp_tree):
         velocities,
         fix="gear/quat molecule tolerance 1e-10",
         before="neighbor 20.0 bin\npair_style lj/cut 8.0\npair_coeff * * 1 1",
-        columns=f"{NEXT} {VALUES} v_x",
+        columns=f"{NEXT} {LOADS} v_x",
         run=UNTIL.format(1e6),
         after="variable x equal xcm(all,x)",
         **settings,
@@ -264,7 +262,7 @@ def test_bodies_that_come_into_the_way(lmp_tree):
     settled = run["Step"] > 1000
     total = run["PotEng"] + run["f_move[1]"] + run["f_move[2]"]  # ke includes freedoms of atoms
     assert np.ptp(total[settled]) < 1e-4
-    assert (run[VALUES][settled] > 5).any()
+    assert (run[LOADS][settled] > 5).any()
 
 
 @pytest.mark.parametrize("words", ["1e-12", "1e-9 energy"])
@@ -273,18 +271,6 @@ def test_ranks_agree(lmp_tree, words):
     data = water_data(lmp_tree.folder / "data")
     deck = water(data, f"gear/quat molecule tolerance {words}", dt=0.5, steps=120)
     agree_on_ranks(lmp_tree, deck)
-
-
-def test_where_it_does_not_pay_the_log_says_so(lmp_tree):
-    data = water_data(lmp_tree.folder / "data")
-    deck = water(data, "gear/quat molecule tolerance 1e-6", dt=1.0, steps=500)
-    said = "step control gains little here"
-    assert lmp_tree.succeed(deck).output.count(said) == 1
-    halted = deck.replace("run 500", UNTIL.format(300.0))
-    assert halted != deck and lmp_tree.succeed(halted).output.count(said) == 1
-    assert said not in lmp_tree.succeed(scene("1e-8")).output
-    # nor where the skin determines the step
-    assert said not in lmp_tree.succeed(water(data, "gear/quat molecule tolerance 1e-3", dt=1.0, steps=500, skin=0.01)).output
 
 
 def test_a_tolerance_far_below_rounding(lmp_tree):
@@ -314,62 +300,3 @@ def test_a_shortest_step_is_not_made_again(lmp_tree):
     assert run[SMALLEST][-1] == pytest.approx(0.004) and run[HELD][-1] >= 1
     assert result.output.count("dtmin keeps") == 1
     assert run[LARGEST][-1] > 1 and run["Time"][-1] >= 8.0
-
-
-WATER_216 = """
-units real
-atom_style full
-newton on
-atom_modify sort 0 0.0
-read_data {}
-pair_style lj/charmm/coul/charmm 6.0 8.0
-pair_coeff 1 1 0.1553 3.166
-pair_coeff * 2 0.0 1.0
-neighbor 1.0 bin
-neigh_modify every 1 delay 0 check yes exclude molecule/intra all
-velocity all create 300.0 4711 loop geom
-fix move all gear/quat molecule
-run 0 post no
-velocity all zero linear
-unfix move
-timestep {}
-fix move all gear/quat molecule {}
-thermo_style custom step time {}
-dump poses all custom {} poses.dump id xu yu zu
-dump_modify poses sort id format float %.17g {}
-{}
-"""
-
-
-def test_216_molecules_of_water(lmp_tree):
-    """The log says that a constant step would do, and the suggested step is about as accurate."""
-    duration, data = 200.0, EXAMPLES / "isokinetic" / "data.water"
-
-    def fixed(steps):
-        dt = duration / steps
-        deck = WATER_216.format(data, f"{dt:.17g}", "values 9", "pe", steps, "", f"run {steps}")
-        done = lmp_tree.run(deck)
-        if "blow-up" in done.output:
-            return np.inf * right
-        assert done.returncode == 0, done.output
-        return frames(lmp_tree.folder / "poses.dump")[steps]
-
-    def controlled(eps, end):
-        words, every = f"tolerance {eps} every/time {duration:g}", f"every/time {duration:g}"
-        deck = WATER_216.format(data, 0.5, words, REPEATED, 1, every, UNTIL.format(end))
-        result = lmp_tree.succeed(deck)
-        _, (step, poses), *_ = frames(lmp_tree.folder / "poses.dump").items()
-        return step, poses, re.findall("gains little here: a fixed time step of (.*?) without", result.words)
-
-    right = fixed(800)
-
-    def error(poses):
-        return np.linalg.norm((poses - right)[:, 1:], axis=1).max()
-
-    for eps, least, most in (("1e-5", 1e-5, 3e-4), ("1e-4", 5e-5, 1e-3)):
-        steps, poses, named = controlled(eps, duration)
-        assert least < error(poses) < most and not named  # a hundred steps are not counted
-        *_, (named,) = controlled(eps, 2 * duration)
-        number = round(duration / float(named))
-        assert error(fixed(number)) < 2 * error(poses) < error(fixed(number // 2))
-        assert float(named) > 0.7 * duration / steps

@@ -43,15 +43,15 @@ def test_forces_are_those_of_the_energy_and_one_percent_is_refused(which):
 
 
 # --- counts -----------------------------------------------------------------------------------------
-@pytest.mark.parametrize("formulation, energy", study.OURS.values())
-def test_every_evaluation_under_a_tolerance_is_counted(formulation, energy):
+@pytest.mark.parametrize("energy", study.OURS.values())
+def test_every_evaluation_under_a_tolerance_is_counted(energy):
     scene = Scene(6)
-    met = scene.follow(formulation, 1e-6, energy)
+    met = scene.follow(1e-6, energy)
     assert met.evaluations == 1 + met.steps + met.repeated
     # the energy after a step is the other call of the forces, which no run needs
     assert scene.calls == met.evaluations + met.steps
     assert met.repeated > 0
-    finer = scene.follow(formulation, 1e-8, energy)
+    finer = scene.follow(1e-8, energy)
     assert finer.error < met.error / 5 and finer.evaluations > met.evaluations
 
 

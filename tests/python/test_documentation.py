@@ -83,10 +83,6 @@ def test_every_default_is_documented():
         if row.kind == "word" and row.standard() != row.standard("tolerance"):
             either = f"{key} = {row.standard()}, or {key} = {row.standard('tolerance')}"
             assert f"{either} with tolerance" in text
-    plain, most = re.fullmatch(r"(\w+), with tolerance (.*)", TABLE["values"].default).groups()
-    most = re.fullmatch(r"(\d+) \(momentum, second\), (\d+) \(first\)", most).groups()
-    most = f"up to {most[0]} for *momentum* and *second* and {most[1]} for *first* with tolerance"
-    assert f"values = {plain}, or {most}" in text
 
 
 def test_a_list_that_is_cut_off_is_no_list():

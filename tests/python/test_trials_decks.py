@@ -110,14 +110,13 @@ def test_held_bodies_are_held_in_the_trials(make_deck, style):
 def test_trials_of_a_deck_whose_step_follows_the_error(make_deck):
     """The line of the deck is tried without this keyword, because the trials end at the same time; a message says
     so."""
-    plain = "fix 1 all gear/quat group 3 clump1 clump2 clump3 values 9"
-    gears = "corrector gear"  # the default with tolerance
+    plain = "fix 1 all gear/quat group 3 clump1 clump2 clump3"
     # and quantities that only such a fix has are not requested
     changes = {FIX: plain + " tolerance 1e-6 dtmax 0.01", " temp f_1": " temp f_1[14]"}
     with Deck(make_deck(**changes, **FOR_GEAR)) as deck:
-        assert deck.fix_lines(None) == [f"{plain} {gears}"]
+        assert deck.fix_lines(None) == [plain]
         assert "tolerance, dtmax left out" in deck.notes[0]
-        own, gear = (deck.run_to(words, 0.4, 100) for words in (None, f"values 9 {gears}"))
+        own, gear = (deck.run_to(words, 0.4, 100) for words in (None, "values 9"))
         with pytest.raises(DeckError, match="keyword tolerance: its steps follow .* with --a"):
             horizon.measure(deck, time=0.4)
         assert horizon.measure(deck, "values 8", time=0.4).trials[0].dt == deck.dt

@@ -171,9 +171,9 @@ def test_what_is_left_out_is_said():
     for line, words in said.items():
         (note,) = script.translate(parse(line))[1]
         assert words in note
-    line = parse("fix 1 a gear/quat single values 9 tolerance 1e-9 dtmin 1e-5 report long")
+    line = parse("fix 1 a gear/quat single compensate no tolerance 1e-9 dtmin 1e-5 report long")
     own, (note,) = script.for_trials(line)
-    assert own.text() == "fix 1 a gear/quat single values 9 report long corrector gear"
+    assert own.text() == "fix 1 a gear/quat single compensate no report long"
     assert note.startswith("fix 1 gear/quat: tolerance, dtmin left out, because trials have steps of")
     plain = parse("fix 1 a gear/quat single report long")
     assert script.for_trials(plain) == (plain, []) and script.translate(plain)[1] == []

@@ -140,7 +140,7 @@ struct Outcome {
 };
 
 /// most_steps: for a pair that keeps orbiting.
-inline Outcome collide(const Collision &collision, Formulation formulation, double eps, bool energy,
+inline Outcome collide(const Collision &collision, double eps, bool energy,
                        long most_steps = 100000, bool repeats = true)
 {
   using One = Follower::One;
@@ -167,10 +167,10 @@ inline Outcome collide(const Collision &collision, Formulation formulation, doub
     return 0.25 * std::max(0.3, length(d) - ones[0].reach - ones[1].reach) / speed;
   };
   const double first = std::min(farthest(bodies), 1e-2 * std::cbrt(eps));
-  Follower follower(formulation, eps, energy, first, bodies, loads);
+  Follower follower(eps, energy, first, bodies, loads);
   follower.farthest = farthest;
   follower.repeats = repeats;
-  follower.begin_with_loads();
+  follower.begin();
 
   const double e0 = potential + collision.kinetic(collision.start);
   Outcome outcome = {0.0, collision.kinetic(collision.start), 0.0, 0, 0, 0, true};

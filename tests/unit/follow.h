@@ -4,27 +4,20 @@
 #pragma once
 
 #include "drive.h"
-#include "gear_quat_step_control.h"
+#include "gear_quat_remembered_loads.h"
 
 namespace Drive {
 
 using std::vector;
-
-inline Scheme varying(Formulation formulation, int values, bool compensate = false)
-{
-  Scheme scheme = scheme_of(formulation, values, 2, compensate);
-  scheme.trial = true;
-  return scheme;
-}
 
 struct Follower {
   struct One {
     RigidBody body;
     double reach;
     BodyState state = {};
-    vector<double> rows = vector<double>(2 * MAX_SIZE, 0.0);
+    vector<double> rows = vector<double>(MAX_SIZE, 0.0);
   };
-  /// Loads on all bodies at their states, for quaternions of any length.
+  /// Loads on all bodies at their states.
   using Loads = std::function<vector<Load>(const vector<One> &)>;
   /// The longest step that the motion allows.
   using Farthest = std::function<double(const vector<One> &)>;
@@ -37,32 +30,24 @@ struct Follower {
   StepControl control;
   Scheme scheme;
   double t = 0.0, h, largest = 0.0;    ///< error of a step, in units of eps
-  Steady steady;
   long steps = 0, evaluations = 0, repeated = 0;
   bool repeats = true;    ///< failed steps
   bool rounded = true;    ///< coordinates, whose rounding error is excluded
+  RememberedLoads remembered;
+  Growth growing;
   Integrator integrator;
-  VariableOrder order;
 
-  Follower(Formulation formulation, double eps, bool energy, double h, vector<One> bodies,
-           Loads loads) :
-      bodies(std::move(bodies)),
-      loads(std::move(loads)),
-      scheme(varying(formulation, std::min(most(formulation), VARIABLE_MOST))), h(h),
-      integrator(scheme, h), order(scheme)
+  Follower(double eps, bool energy, double h, vector<One> bodies, Loads loads) :
+      bodies(std::move(bodies)), loads(std::move(loads)), scheme(RememberedLoads::scheme(true)),
+      h(h), remembered(true), integrator(scheme, h, CorrectorCoefficients())
   {
     control.eps = eps;
     control.energy = energy;
-    control.short_of = energy && formulation == SECOND ? 1 : 0;
-    control.fewest = fewest(formulation);
-    control.most = scheme.values();
-    steady.repeat = Steady::FOR_LONG;
   }
 
-  /// Histories from the present loads alone, with the fewest values.
-  void begin_with_loads()
+  /// Histories from the present loads.
+  void begin()
   {
-    use(control.fewest);
     const vector<Load> met = loads(bodies);
     ++evaluations;
     for (size_t k = 0; k < bodies.size(); ++k) {
@@ -72,31 +57,22 @@ struct Follower {
     }
   }
 
-  void use(int values)
-  {
-    scheme.rows = values;
-    integrator = Integrator(scheme, h);
-    order = VariableOrder(scheme);
-    steady.values = 0;
-  }
-
   void set_step(double step)
   {
     for (One &one : bodies) integrator.rescale(one.rows.data(), step / h);
     h = step;
     integrator.set_step(h);
-    steady.step = 0;
   }
 
-  void change(const StepControl::Next &next)
+  void change_loads(int loads)
   {
-    if (next.values != scheme.values()) {
-      for (One &one : bodies)
-        next.values > scheme.values() ? order.add_row(one.rows.data())
-                                      : order.drop_row(one.rows.data());
-      use(next.values);
+    while (remembered.loads() != loads) {
+      remembered.change(loads > remembered.loads(), h, [&](auto act) {
+        for (One &one : bodies) act(one.rows.data());
+      });
+      scheme.rows = remembered.values();
+      integrator = Integrator(scheme, h, remembered.coefficients());
     }
-    if (next.step != h) set_step(next.step);
   }
 
   void take_states()
@@ -106,46 +82,56 @@ struct Follower {
 
   StepErrors try_step()
   {
-    StepMeasures all;
+    StepErrors all;
+    remembered.prepare(h);
+    integrator = Integrator(scheme, h, remembered.coefficients());
     for (One &one : bodies) integrator.predict(one.body, one.rows.data());
     take_states();
     const vector<Load> met = loads(bodies);
     ++evaluations;
     for (size_t k = 0; k < bodies.size(); ++k) {
-      StepMeasures errors;
+      const One &one = bodies[k];
       double *rows = bodies[k].rows.data();
-      order.correct(integrator, bodies[k].body, bodies[k].reach, met[k],
-                    integrator.axes_of(rows).data(), rows, errors);
-      all.include(rounded ? control.counted(errors) : errors);
+      StepErrors errors;
+      remembered.correct(integrator, one.body, one.reach, met[k], integrator.axes_of(rows).data(),
+                         rows, errors);
+      const StepErrors rounding =
+          remembered.rounding(integrator, one.body, one.reach, met[k], rows);
+      all.include(rounded ? control.counted(errors, rounding) : errors);
     }
     take_states();
-    return control.measured(all);
+    return all;
   }
 
   /// An accepted step, possibly after failed tries.
   StepErrors step()
   {
     while (true) {
-      vector<One> before = bodies;
+      const vector<One> before = bodies;
       const StepErrors errors = try_step();
-      if (!repeats || !control.fails(errors.same, h)) {
+      const double error = control.error(errors);
+      if (!repeats || !control.fails(error, h)) {
         t += h;
         ++steps;
-        steady.count();
-        largest = std::max(largest, errors.same / control.eps);
+        remembered.conclude(h);
+        largest = std::max(largest, error / control.eps);
         return errors;
       }
-      bodies.swap(before);
-      const auto shorter = control.repeat(errors.same, h, scheme.values(), steady);
-      steady.repeat = 0;
+      bodies = before;
       ++repeated;
-      change(shorter);
+      change(control.repeat(error, h, remembered.loads(), growing));
     }
+  }
+
+  void change(const StepControl::Next &next)
+  {
+    change_loads(next.loads);
+    set_step(next.step);
   }
 
   void follow(const StepErrors &errors)
   {
-    change(control.next(errors, h, scheme.values(), steady, farthest(bodies)));
+    change(control.next(errors, h, remembered, growing, farthest(bodies)));
   }
 
   /// Runs to the time `end` exactly; seen: called after every step.

@@ -14,15 +14,11 @@ from benchmarks.reference import solvers
 
 from .scene import Scene
 
-#: label -> (formulation, True if eps is an energy)
-OURS = {
-    f"{formulation}, eps {words}": (formulation, energy)
-    for formulation in ("second", "first")
-    for energy, words in ((True, "an energy"), (False, "a length"))
-}
+#: label -> True if eps is an energy
+OURS = {"eps an energy": True, "eps a length": False}
 PEERS = (*solvers.METHODS, *solvers.CVODE)
 #: label -> (color, line)
-LOOKS = {name: (which, "-" if energy else "--") for name, (which, energy) in OURS.items()}
+LOOKS = {name: ("second", "-" if energy else "--") for name, energy in OURS.items()}
 LOOKS |= {name: (("total", "rotation")[k // 2], ("-", "--")[k % 2]) for k, name in enumerate(PEERS)}
 EPS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14)
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 3e-14)
@@ -51,7 +47,7 @@ def of_peer(scene, name, tolerance):
 
 def points_of(scene):
     """Label -> array (tolerances, 2), see Results."""
-    runs = {name: [scene.follow(own[0], eps, own[1]) for eps in EPS] for name, own in OURS.items()}
+    runs = {name: [scene.follow(eps, energy) for eps in EPS] for name, energy in OURS.items()}
     depth = next(iter(runs.values()))[-1].depth
     points = {name: [run[:2] for run in own] for name, own in runs.items()}
     for name in solvers.available():

@@ -50,10 +50,9 @@ void energies(const Collision *collision, const BodyState *now, double *found)
 }
 
 /// found: evaluations, largest error of the energy on the way (NaN if it is lost), depth, steps, repeated.
-void follow(const Collision *collision, int second, double eps, int energy, int most_steps,
-            double *found)
+void follow(const Collision *collision, double eps, int energy, int most_steps, double *found)
 {
-  const Outcome met = collide(*collision, second ? SECOND : FIRST, eps, energy, most_steps);
+  const Outcome met = collide(*collision, eps, energy, most_steps);
   const bool lost = !met.arrived || met.steps >= most_steps;
   const double error = lost ? std::numeric_limits<double>::quiet_NaN() : met.error;
   const double numbers[] = {double(met.evaluations), error, met.depth, double(met.steps),

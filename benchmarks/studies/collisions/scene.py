@@ -29,7 +29,7 @@ def library():
     loaded.calls.argtypes, loaded.calls.restype = [place], ctypes.c_long
     loaded.discard.argtypes = [place]
     loaded.rates.argtypes = loaded.energies.argtypes = [place] * 3
-    loaded.follow.argtypes = [place, whole, real, whole, whole, place]
+    loaded.follow.argtypes = [place, real, whole, whole, place]
     return loaded
 
 
@@ -72,9 +72,9 @@ class Scene:
         """Units of absolute tolerances, shape (13,), without the initial distance, at which there is no force."""
         return np.ones(y.shape[1])
 
-    def follow(self, formulation, eps, energy):
+    def follow(self, eps, energy):
         """Followed of a run with the tolerance ``eps``, which is an ``energy`` or a length."""
         found = np.empty(5)
-        task = (formulation == "second", eps, energy, MOST_STEPS, found.ctypes.data)
+        task = (eps, energy, MOST_STEPS, found.ctypes.data)
         library().follow(self._own, *task)
         return Followed(*found.tolist())

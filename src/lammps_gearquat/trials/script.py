@@ -291,9 +291,6 @@ def for_trials(line):
     left_out = [key for key, _ in line.keywords if key not in dict(kept.keywords)]
     if not left_out:
         return line, []
-    if "tolerance" in left_out and "corrector" not in dict(kept.keywords):
-        standard = keywords.table()["corrector"].standard("tolerance")
-        kept = replace(kept, keywords=(*kept.keywords, ("corrector", (standard,))))
     return kept, [
         f"fix {line.id} {line.style}: {', '.join(left_out)} left out, because trials have steps of equal"
         " length; the cost of steps that change is not measured"
