@@ -105,7 +105,7 @@ EFFECTS = (
         "changing step",
         moved(words=TOLERANCE),
         moved(words=FIXED),
-        own=r"GearQuat::Tolerance::|GearQuat::VariableOrder::",
+        own=r"GearQuat::Tolerance::|GearQuat::RememberedLoads::",
     ),
     Effect(
         "masks",
