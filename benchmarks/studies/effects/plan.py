@@ -18,7 +18,7 @@ EACH, CHARGED_EACH = replace(MOVED, each=True), replace(CHARGED, each=True)
 moved, charged_each = partial(replace, MOVED), partial(replace, CHARGED_EACH)
 #: step control that does all its work but never changes the step, so that equal steps are compared
 FIXED = "values 5"
-TOLERANCE = f"{FIXED} tolerance 1.0 dtmin 0.0005 dtmax 0.0005"
+TOLERANCE = "tolerance 1.0 dtmin 0.0005 dtmax 0.0005"
 #: Gauss's principle needs the first formulation and its own step
 FIRST = "formulation first"
 ISOKINETIC = f"{FIRST} isokinetic total"
