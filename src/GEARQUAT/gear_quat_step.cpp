@@ -25,7 +25,7 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
-/// Box and limits of frictions of remembered loads are those of histories of constant order.
+/// With remembered loads the box and the limits of frictions are those of a constant order.
 static Scheme scheme_of_coupling(Scheme scheme)
 {
   if (!scheme.remembers) return scheme;
@@ -35,6 +35,8 @@ static Scheme scheme_of_coupling(Scheme scheme)
   return scheme;
 }
 
+/// The keywords exclude two couplings, and a coupling with a changing step if it does not support
+/// one.
 std::unique_ptr<Coupling> GearQuat::make_coupling(LAMMPS *lmp, const Fix *fix,
                                                   const Arguments &args, Bodies &bodies,
                                                   const Sites &sites)
@@ -283,7 +285,8 @@ void Step::find_limits(double h)
     longest = std::max(longest, follows ? HUGE_VAL : domain->prd[k]);
   }
   blowup.limits = MotionLimits(h, longest);
-  if (tolerance) blowup.limits.rate2 = HUGE_VAL;    // turns are exact
+  if (tolerance && args.control.shortest == 0.0)    // turns are exact, and errors small
+    blowup.limits.rate2 = HUGE_VAL;
 }
 
 /// Tests a corrected state.

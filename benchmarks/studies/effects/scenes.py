@@ -70,7 +70,7 @@ class Scene:
         values = DEFAULT_VALUES["first" if "formulation first" in self.words else "momentum"]
         return _DECK.format(
             scene=self,
-            method="" if "values" in self.words else f"values {values}",
+            method="" if "values" in self.words or "tolerance" in self.words else f"values {values}",
             spacing=SPACING,
             side=side,
             origin=0.0 if self.crossing else 0.4,

@@ -9,7 +9,7 @@ from benchmarks.studies.accuracy.tables import NONE, TARGETS, count_text, power,
 from . import peers, scenes
 
 #: largest number of evaluations for each error in test case 1
-MOST = {scenes.FIXED: (650, 800, 1250, 2050), scenes.TOLERANCE: (500, 650, 1000, 1600)}
+MOST = {scenes.FIXED: (650, 800, 1250, 2050), scenes.TOLERANCE: (310, 420, 560, 720)}
 #: the fix in tables: key -> label
 OURS = {scenes.FIXED: "`fix gear/quat`, default settings", scenes.TOLERANCE: "`fix gear/quat`, keyword `tolerance`"}
 OTHER = "the strongest of the other methods"
