@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from scenes import (
-    FORMULATIONS,
     MOLECULES,
     difference,
     largest_change,
@@ -16,7 +15,7 @@ from scenes import (
 from scipy.integrate import solve_ivp
 from inserted import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
 from heated import COMMON, END, KINDS, cluster, continued, whole_and_halves
-from stepped import ELEMENTS, LARGEST, NEXT, REPEATED, LOADS, agree_on_ranks, tables
+from stepped import ELEMENTS, LARGEST, LOADS, NEXT, REPEATED, agree_on_ranks, tables
 
 TEMP = "temp 0.5 0.5 0.3"
 TAKEN, XI = "f_move[19]", "f_move[23]"  # with tolerance

@@ -9,7 +9,21 @@ import numpy as np
 import pytest
 from running import EXAMPLES
 from scenes import UNITS, assigned, one_after_the_other, restarted, two_molecules, water, water_data, whole_deck
-from stepped import ELEMENTS, HELD, INSERTED, LARGEST, LOADS, MEAN, MEAN_LOADS, NEXT, REPEATED, SMALLEST, meeting, off, tables
+from stepped import (
+    ELEMENTS,
+    HELD,
+    INSERTED,
+    LARGEST,
+    LOADS,
+    MEAN,
+    MEAN_LOADS,
+    NEXT,
+    REPEATED,
+    SMALLEST,
+    meeting,
+    off,
+    tables,
+)
 
 COLUMNS = " ".join(ELEMENTS)
 

@@ -1,12 +1,25 @@
 """Keyword tolerance: a failed step is repeated, without any effect on the rest of LAMMPS."""
 
-import re
-
 import numpy as np
 import pytest
-from running import EXAMPLES
-from scenes import frames, one_after_the_other, placed, water, water_data
-from stepped import ENERGY, HELD, INSERTED, LARGEST, LENGTH, MEAN, NEXT, REPEATED, SMALLEST, TWO, LOADS, agree_on_ranks, meeting, off, tables
+from scenes import one_after_the_other, placed, water, water_data
+from stepped import (
+    ENERGY,
+    HELD,
+    INSERTED,
+    LARGEST,
+    LENGTH,
+    LOADS,
+    MEAN,
+    NEXT,
+    REPEATED,
+    SMALLEST,
+    TWO,
+    agree_on_ranks,
+    meeting,
+    off,
+    tables,
+)
 
 SMOOTH = "lj/charmm/coul/charmm 4.0 6.0"
 UNTIL = """
@@ -196,7 +209,9 @@ thermo 1
 @pytest.mark.parametrize("words", ["1e-9 length {0}", "1e-8 energy {1}"])
 def test_two_atoms_fly_alike_in_all_units(lmp_tree, words):
     """In units of sigma or of the depth, eps is the same number in all of LAMMPS' unit styles."""
-    decks = [argon(units, f"{words.format(*sizes)} every/time {0.5 * sizes[3]}", skin=0.6) for units, sizes in ARGON.items()]
+    decks = [
+        argon(units, f"{words.format(*sizes)} every/time {0.5 * sizes[3]}", skin=0.6) for units, sizes in ARGON.items()
+    ]
     decks.append(argon("lj", f"{words.split()[0]} {words.split()[1]} every/time 0.5", skin=0.6))
     runs = tables(lmp_tree.succeed(one_after_the_other(decks)))
     scaled = []
