@@ -1,7 +1,5 @@
 """The commands of a deck, as text."""
 
-from dataclasses import replace
-
 import pytest
 
 from lammps_gearquat import keywords
