@@ -8,6 +8,7 @@
 #include "gear_quat_extended.h"
 #include "gear_quat_images.h"
 #include "gear_quat_ranks.h"
+#include "gear_quat_shapes.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -427,4 +428,402 @@ double Assembly::memory_usage() const
   return parts.memory_usage() + made.capacity() * sizeof(Made) + sizes.capacity() * sizeof(Sizes) +
       extremes.capacity() * sizeof(Extremes) + moments.capacity() * sizeof(Moments) +
       parts.number() * sizeof(Momenta);
+}
+
+static constexpr double ROUNDED = 1.0e-3;     // of a moment written with few digits
+static constexpr double HALF = 0.5;           // of a period
+static constexpr double SAME = 1.0e-9;        // of moments, relative
+static constexpr double UNMOVED = 1.0e-11;    // of coordinates, rounding
+
+static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: on neither side
+
+/* ----------------------------------------------------------------------
+   principal axes
+------------------------------------------------------------------------- */
+
+/// Principal moments, and axes without directions.
+void Assembly::find_axes(int part, const Momenta &momenta)
+{
+  double tensor[9];
+  const MomentaUnits unit = units_of_momenta(part);
+  for (int m = 0; m < 6; ++m)
+    tensor[3 * ROW[m] + COLUMN[m]] = tensor[3 * COLUMN[m] + ROW[m]] =
+        momenta.inertia_space[m].value(unit.inertia);
+  Made &one = made[part];
+  if (one.body.from_file) {
+    const double *i = given.at(one.body.id).inertia;
+    const double given_tensor[9] = {i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]};
+    std::copy_n(given_tensor, 9, tensor);
+  }
+  // in two dimensions bodies turn about the z axis, which does not change at all
+  if (domain->dimension == 2) tensor[2] = tensor[5] = tensor[6] = tensor[7] = 0.0;
+  double *moments = one.body.rigid.inertia;
+  principal_axes(tensor, moments, one.axes);
+  check_moments(one);
+  drop_vanishing_moments(moments);
+  if (domain->dimension == 3) sort_axes(moments, one.axes);
+}
+
+/// Orientation and angular velocity.
+void Assembly::find_rotation(int part, const Momenta &momenta)
+{
+  Made &one = made[part];
+  const double *moments = one.body.rigid.inertia;
+  const MomentaUnits unit = units_of_momenta(part);
+  double momentum_space[3], momentum_body[3];
+  for (int k = 0; k < 3; ++k)
+    momentum_space[k] = one.body.from_file ? given.at(one.body.id).angular_momentum_space[k]
+                                           : momenta.angular_momentum_space[k].value(unit.momentum);
+  quaternion_from_matrix(one.axes, one.state.q);
+  to_body(one.axes, momentum_space, momentum_body);
+  for (int k = 0; k < 3; ++k)
+    one.state.omega_body[k] = moments[k] > 0.0 ? momentum_body[k] / moments[k] : 0.0;
+  if (domain->dimension == 2)
+    one.state.velocity[2] = one.state.omega_body[0] = one.state.omega_body[1] = 0.0;
+  for (int k = 0; k < 3; ++k)
+    if (!std::isfinite(one.state.omega_body[k]) || !std::isfinite(one.state.velocity[k]))
+      faulty[NOT_FINITE] = one.body.id;
+}
+
+/* ----------------------------------------------------------------------
+   directions of the axes
+------------------------------------------------------------------------- */
+
+/// Directs the axes by the body itself, not by its orientation at the start: the first and the
+/// third axis point to the side of the heaviest site that is not in the plane perpendicular to the
+/// axis; among equally heavy sites the first one counts.
+void Assembly::orient_axes()
+{
+  if (domain->dimension != 3) return;
+  const auto along = [this](int part, const Site &site, double *components) {
+    double arm[3];
+    for (int k = 0; k < 3; ++k) arm[k] = site.x[k] - made[part].state.center[k];
+    to_body(made[part].axes, arm, components);
+  };
+  const std::vector<Reach> reach = over_sites(Reach{0.0}, [&](Reach &all, int part) {
+    visit(part, [&](const Site &site) {
+      double x[3];
+      along(part, site, x);
+      for (const double one : x) all.largest = std::max(all.largest, std::fabs(one));
+    });
+  });
+  const Sides none = {{-1.0, -1.0, -1.0}, {MAXTAGINT, MAXTAGINT, MAXTAGINT}, {}};
+  const std::vector<Sides> sides = over_sites(none, [&](Sides &all, int part) {
+    visit(part, [&](const Site &site) {
+      Sides one = none;
+      along(part, site, one.side);
+      for (int k = 0; k < 3; ++k) {
+        if (std::fabs(one.side[k]) < ON_AXIS * reach[part].largest) continue;
+        one.mass[k] = site.mass;
+        one.tag[k] = site.tag;
+      }
+      all.merge(one);
+    });
+  });
+  for (int part = 0; part < parts.number(); ++part) direct(made[part].axes, sides[part]);
+}
+
+/// Sets two directions; the third axis follows from them.
+void Assembly::direct(double *axes, const Sides &sides)
+{
+  // false if all sites are in the plane perpendicular to the axis
+
+  const auto turn = [&](int k) {
+    if (sides.tag[k] == MAXTAGINT) return false;
+    if (sides.side[k] < 0.0)
+      for (int i = 3 * k; i < 3 * k + 3; ++i) axes[i] = -axes[i];
+    return true;
+  };
+  const bool first = turn(0), third = turn(2);
+  const int last = first == third ? 1 : first ? 2 : 0;
+  if (last != 1) turn(1);
+  cross3(axes + 3 * ((last + 1) % 3), axes + 3 * ((last + 2) % 3), axes + 3 * last);
+}
+
+/// The axes of symmetric bodies are arbitrary: a body that has not turned keeps the former ones.
+void Assembly::keep_axes()
+{
+  const std::vector<Reach> moved = over_sites(Reach{0.0}, [this](Reach &all, int part) {
+    visit(part, [&](const Site &site) {
+      double arm[3], arm_body[3];
+      find_arm(site.x, made[part].state.center, arm);
+      to_body(former->axes[parts.atoms(part).first[0]].data(), arm, arm_body);
+      const double off = std::sqrt(distance2(arm_body, site.former_arm));
+      all.largest = std::max(all.largest, off);
+    });
+  });
+  const double box = domain->xprd + domain->yprd + domain->zprd;
+  for (int part = 0; part < parts.number(); ++part) {
+    Made &one = made[part];
+    double *moments = one.body.rigid.inertia;
+    const double largest = std::max({moments[0], moments[1], moments[2]});
+    const double same = SAME * largest;
+    const bool symmetric = std::fabs(moments[0] - moments[1]) < same ||
+        std::fabs(moments[1] - moments[2]) < same || std::fabs(moments[2] - moments[0]) < same;
+    if (!symmetric || moved[part].largest > UNMOVED * (box + length(one.state.center))) continue;
+    const double *axes = former->axes[parts.atoms(part).first[0]].data();
+    double tensor[9] = {}, now[3];
+    add_tensor(moments, one.axes, tensor);
+    bool principal = true;
+    for (int k = 0; k < 3; ++k) {
+      double turned[3];    // I times the k-th axis
+      to_body(tensor, axes + 3 * k, turned);
+      now[k] = dot3(turned, axes + 3 * k);
+      for (int l = 0; l < 3; ++l)
+        if (std::fabs(turned[l] - now[k] * axes[3 * k + l]) > same) principal = false;
+    }
+    if (!principal) continue;
+    std::copy_n(axes, 9, one.axes);
+    std::copy_n(now, 3, moments);
+    drop_vanishing_moments(moments);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   invalid bodies
+------------------------------------------------------------------------- */
+
+/// Texts in the order of Assembly's faults; the first fault found is reported.
+static const char *const FAULT_TEXTS[] = {
+    "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to more than zero",
+    "Fix gear/quat: inertia or velocities of body {} are not finite numbers",
+    "Fix gear/quat infile: the inertia tensor of body {} has a negative principal moment, which "
+    "is impossible",
+    "Fix gear/quat infile: the largest principal moment of body {} is more than the sum of the "
+    "two others, which is impossible",
+    "Fix gear/quat infile: the center of mass of body {} is far away from all its atoms; are its "
+    "position and its image flags right?"};
+
+/// A given center may lie outside of the body, but not by half a box, since image flags belong to
+/// it.
+void Assembly::check_place(int part, const Momenta &momenta)
+{
+  const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
+  const double far = made[part].body.extent + 0.5 * longest;
+  if (!(momenta.from_center2 <= far * far)) faulty[APART] = made[part].body.id;
+}
+
+/// Sums over masses satisfy all of this automatically, up to rounding.
+void Assembly::check_moments(const Made &one)
+{
+  const double *moments = one.body.rigid.inertia;
+  const double largest = std::max({moments[0], moments[1], moments[2]});
+  const double smallest = std::min({moments[0], moments[1], moments[2]});
+  const double sum = moments[0] + moments[1] + moments[2];
+  if (!std::isfinite(sum))
+    faulty[NOT_FINITE] = one.body.id;
+  else if (smallest < -LINEAR_FRACTION * largest)
+    faulty[NEGATIVE] = one.body.id;
+  else if (one.body.from_file && domain->dimension == 3 &&
+           (1.0 - ROUNDED) * largest > sum - largest)
+    faulty[UNBALANCED] = one.body.id;
+}
+
+void Assembly::report_faults()
+{
+  const auto any = over_ranks(MPI_MAX, faulty, world);
+  for (int fault = 0; fault < FAULTS; ++fault)
+    if (any[fault] > 0) error->all(FLERR, FAULT_TEXTS[fault], any[fault]);
+}
+
+void Assembly::report_missing() const
+{
+  if (over_ranks(MPI_SUM, (int) found.size(), world) == (int) given.size()) return;
+  for (const auto &stated : given) {
+    const int here = std::count(found.begin(), found.end(), stated.first) > 0;
+    if (!over_ranks(MPI_MAX, here, world))
+      error->all(FLERR, "Fix gear/quat infile: no atom belongs to body {}", stated.first);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   bodies of several clumps
+------------------------------------------------------------------------- */
+
+namespace {
+
+/// The sites of a body along each direction, in intervals of half a period, or longer if the body
+/// extends over many periods: two sites in one interval have no gap of more than half a period
+/// between them.
+struct Clumps {
+  static constexpr int INTERVALS = 16;
+  double lo[3][INTERVALS], hi[3][INTERVALS];
+
+  Clumps()
+  {
+    for (int k = 0; k < 3; ++k) {
+      std::fill_n(lo[k], INTERVALS, NONE);
+      std::fill_n(hi[k], INTERVALS, -NONE);
+    }
+  }
+  void merge(const Clumps &other)
+  {
+    for (int k = 0; k < 3; ++k)
+      for (int n = 0; n < INTERVALS; ++n) {
+        lo[k][n] = std::min(lo[k][n], other.lo[k][n]);
+        hi[k][n] = std::max(hi[k][n], other.hi[k][n]);
+      }
+  }
+  void add(int direction, double interval, double along)
+  {
+    const int n = std::min((int) (along / interval), INTERVALS - 1);
+    lo[direction][n] = std::min(lo[direction][n], along);
+    hi[direction][n] = std::max(hi[direction][n], along);
+  }
+  bool have_gap() const
+  {
+    for (int k = 0; k < 3; ++k) {
+      double last = NONE;
+      for (int n = 0; n < INTERVALS; ++n) {
+        if (lo[k][n] > hi[k][n]) continue;    // no site
+        if (lo[k][n] - last > HALF) return true;
+        last = hi[k][n];
+      }
+    }
+    return false;
+  }
+};
+
+}    // namespace
+
+/// Bounds of the coordinates of a body, in units of the periods.
+std::array<double, 2> Assembly::bounds(int part, int direction) const
+{
+  std::array<double, 2> found = {NONE, -NONE};
+  for (int corner = 0; corner < 8; ++corner) {
+    double x[3], periods[3];
+    for (int k = 0; k < 3; ++k) x[k] = (corner >> k & 1 ? extremes[part].hi : extremes[part].lo)[k];
+    to_periods(domain, x, periods);
+    found[0] = std::min(found[0], periods[direction]);
+    found[1] = std::max(found[1], periods[direction]);
+  }
+  return found;
+}
+
+/// Two plates may be one body, but two halves of a molecule at opposite faces of the box may not.
+void Assembly::warn_of_clumps() const
+{
+  std::vector<tagint> wide(atom->nlocal, 0);    // bodies that may have a gap
+  for (int part = 0; part < parts.number(); ++part)
+    for (int k = 0; k < 3; ++k) {
+      const auto bound = bounds(part, k);
+      if (k >= domain->dimension || !domain->periodicity[k] || !(bound[1] - bound[0] > HALF))
+        continue;
+      for (const int i : parts.atoms(part)) wide[i] = parts.key(part);
+    }
+  const int here = std::any_of(wide.begin(), wide.end(), [](tagint id) {
+    return id != 0;
+  });
+  if (!over_ranks(MPI_MAX, here, world)) return;
+
+  const Parts suspects(comm, world, wide.data(), atom->nlocal);
+  std::vector<Clumps> clumps(suspects.number());
+  for (int suspect = 0; suspect < suspects.number(); ++suspect) {
+    const int part = parts.find(suspects.key(suspect));
+    double lo[3], interval[3];
+    for (int k = 0; k < 3; ++k) {
+      const auto bound = bounds(part, k);
+      lo[k] = bound[0];
+      interval[k] = std::max(HALF, (bound[1] - bound[0]) / Clumps::INTERVALS);
+    }
+    for (const int i : parts.atoms(part)) {
+      double x[3], periods[3];
+      unwrapped(part, i, x);
+      to_periods(domain, x, periods);
+      for (int k = 0; k < 3; ++k)
+        if (domain->periodicity[k])
+          clumps[suspect].add(k, interval[k], std::max(0.0, periods[k] - lo[k]));
+    }
+  }
+  suspects.merge(clumps);
+  tagint in_clumps = 0;
+  for (int suspect = 0; suspect < suspects.number(); ++suspect)
+    if (clumps[suspect].have_gap()) in_clumps = suspects.key(suspect);
+  in_clumps = over_ranks(MPI_MAX, in_clumps, world);
+  if (in_clumps && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: parts of body {} are more than half of a periodic box apart; "
+                   "if they belong together, the image flags of its atoms are wrong: unwrap the "
+                   "atoms in the data file, or use set image before this fix",
+                   in_clumps);
+}
+
+/* ----------------------------------------------------------------------
+   bodies of the same kind
+------------------------------------------------------------------------- */
+
+bool Assembly::Made::moves_apart(const double *v, const double *arm_body) const
+{
+  constexpr double APART = 1.0e-3;    // velocities of a data file have few digits
+  double turning_body[3], turning[3], off[3];
+  cross3(state.omega_body, arm_body, turning_body);
+  to_space(axes, turning_body, turning);
+  for (int k = 0; k < 3; ++k) off[k] = v[k] - state.velocity[k] - turning[k];
+  return dot3(off, off) > APART * APART * dot3(v, v);
+}
+
+namespace {
+
+/// Radii of gyration about the principal axes of bodies of one kind.
+struct Radii {
+  double least[3], most[3];
+  tagint with_least[3], with_most[3];    ///< IDs of bodies
+  void merge(const Radii &other)
+  {
+    for (int k = 0; k < 3; ++k) {
+      if (other.least[k] < least[k]) least[k] = other.least[k], with_least[k] = other.with_least[k];
+      if (other.most[k] > most[k]) most[k] = other.most[k], with_most[k] = other.with_most[k];
+    }
+  }
+};
+
+}    // namespace
+
+/// Molecules that were flexible until the fix was defined keep the shapes that they had then.
+/// Atoms of finite size have different radii and masses with the same type.
+bool Assembly::warn_of_shapes() const
+{
+  constexpr double OTHER = 0.005;    // of the size; coordinates with three decimals differ less
+  if (extended || atom->rmass) return false;
+  std::vector<tagint> kinds(made.size(), 0);
+  for (size_t part = 0; part < made.size(); ++part)
+    if (made[part].owner_rank == comm->me && !made[part].body.from_file)
+      kinds[part] = 1 + (tagint) (sizes[part].types % (MAXTAGINT - 1));
+  const Parts families(comm, world, kinds.data(), (int) kinds.size());
+  std::vector<Radii> radii;
+  for (int family = 0; family < families.number(); ++family) {
+    Radii all = {{NONE, NONE, NONE}, {}, {}, {}};
+    for (const int part : families.atoms(family)) {
+      const RigidBody &rigid = made[part].body.rigid;
+      Radii one;
+      for (int k = 0; k < 3; ++k) {
+        one.least[k] = one.most[k] = std::sqrt(std::max(0.0, rigid.inertia[k] / rigid.mass));
+        one.with_least[k] = one.with_most[k] = made[part].body.id;
+      }
+      all.merge(one);
+    }
+    radii.push_back(all);
+  }
+  families.merge(radii);
+  double largest = OTHER;
+  tagint bodies[2] = {0, 0};
+  for (const Radii &one : radii)
+    for (int k = domain->dimension == 2 ? 2 : 0; k < 3; ++k) {
+      const double size = std::max({one.most[0], one.most[1], one.most[2]});
+      if (!(one.most[k] - one.least[k] > largest * size)) continue;
+      largest = (one.most[k] - one.least[k]) / size;
+      bodies[0] = one.with_least[k];
+      bodies[1] = one.with_most[k];
+    }
+  const double all = over_ranks(MPI_MAX, largest, world);
+  if (largest < all) bodies[0] = bodies[1] = 0;
+  const auto named = over_ranks(MPI_MAX, bodies, world);
+  if (named[0] && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: bodies {} and {} have atoms of the same types, and their "
+                   "shapes differ by {:.2g} % of their size; bodies keep the shapes they have "
+                   "when the fix is defined: if they are equal molecules, define the fix before "
+                   "minimize, or run one step with fix shake before the fix",
+                   named[0], named[1], 100.0 * all);
+  return named[0] != 0;
 }

@@ -5,15 +5,21 @@
 
 #include "gear_quat_barostat.h"
 
+#include "gear_quat_known_styles.h"
 #include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "kspace.h"
+#include "modify.h"
+#include "neighbor.h"
 #include "update.h"
+#include "utils.h"
 
 #include <algorithm>
 #include <cmath>
@@ -495,4 +501,440 @@ double Barostat::element(int n)
   if (n < E_BOX) return rate[n - STRAIN_RATE];
   if (n == E_BOX) return 0.5 * twice_kinetic_of_box() * force->mvv2e;
   return friction_now();
+}
+
+/* ----------------------------------------------------------------------
+   before a run
+------------------------------------------------------------------------- */
+
+/// Refuses atoms outside of bodies.
+void Barostat::refuse_others() const
+{
+  bigint here = 0;
+  tagint last = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    here += bodies.body_at(ibody).natoms;
+    last = std::max(last, bodies.body_at(ibody).id);
+  }
+  const bigint others = atom->natoms - over_ranks(MPI_SUM, here, world);
+  if (others == 0) return;
+  const double number = std::pow(10.0, std::ceil(std::log10(over_ranks(MPI_MAX, last, world) + 1)));
+  error->all(FLERR,
+             "Fix gear/quat: constant pressure requires all atoms to be in bodies of this fix, and "
+             "{3} are not: their places would not follow the box; make each of them a body of its "
+             "own with \"variable b atom '({0})*({1})+(1-({0}))*({2:.0f}+id)'\" and with \"custom "
+             "v_b\" for a group of all atoms, and let no other fix move them",
+             asked.in_bodies, asked.bodies, number, others);
+}
+
+/// Refuses forces without a virial, and positions that do not follow the box.
+void Barostat::refuse_scene() const
+{
+  virial.check_compute();
+  refuse_others();
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR,
+               "Fix gear/quat: constant pressure cannot be used with run_style respa; use "
+               "run_style verlet");
+  if (force->kspace && force->kspace->scalar_pressure_flag)
+    error->all(FLERR, "Fix gear/quat: constant pressure requires kspace_modify pressure/scalar no");
+  if (asked.shears() && virial.has_torques())
+    error->all(FLERR,
+               "Fix gear/quat: shear components of the pressure require atoms that are "
+               "points: torques on atoms make the virial of LAMMPS unsymmetric");
+  if (const Fix *other = fix_with_forces(lmp, fix))
+    error->all(
+        FLERR,
+        "Fix gear/quat: constant pressure cannot be used with fix {} ({}), which may change "
+        "forces: what they add to the pressure is not known; leave it out, or keep the volume",
+        other->id, other->style);
+  if (asked.shears() && asked.flip && !box.can_flip() && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: this build replaces no tilted box on several ranks (keyword "
+                   "flip), because its LAMMPS comes without irregular.h; with a tilt of much more "
+                   "than half a period steps take longer");
+}
+
+/// Without temp and ptemp, uses the temperature of the bodies when the box starts to move.
+void Barostat::find_temperature()
+{
+  if (acts() || words.start > 0.0) return;
+  double here[2] = {0.0, 0.0};
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const RigidBody &rigid = bodies.rigid_of(ibody);
+    const BodyState &s = bodies.state_of(ibody);
+    here[0] += 2.0 * translational_energy(rigid, s.velocity) +
+        2.0 * rotational_energy(rigid, s.omega_body);
+    here[1] += rigid.freedoms(domain->dimension);
+  }
+  const auto all = over_ranks(MPI_SUM, here, world);
+  if (!(all[0] > 0.0))
+    error->all(FLERR,
+               "Fix gear/quat: the mass of the box needs a temperature, and the bodies have "
+               "none; give them velocities first, or add keyword ptemp");
+  words.start = words.stop = all[0] / all[1] * force->mvv2e / force->boltz;
+}
+
+void Barostat::tell_freedoms_of_box()
+{
+  std::vector<std::string> masses;
+  for (int k = 0; k < Upper::SIZE; ++k) {
+    if (!asked.on[k]) continue;
+    const std::string mass = fmt::format("{:.4g}", mass_of(k) * force->mvv2e);
+    if (!std::count(masses.begin(), masses.end(), mass)) masses.push_back(mass);
+  }
+  tell_once(told_of_box,
+            fmt::format("barostat for {:.0f} degrees of freedom of translation{} and {} of the "
+                        "box, whose mass is {} at a temperature of {:.4g}",
+                        freedoms[TRANSLATION], total.description(), free_components(),
+                        utils::join_words(masses, " and "), kt * force->mvv2e / force->boltz));
+}
+
+void Barostat::begin_run(bool begins, double h)
+{
+  refuse_scene();
+  if (begins) find_temperature();
+  Thermostat::begin_run(begins, h);
+  if (freedoms[TRANSLATION] < 1.0)
+    error->all(FLERR, "Fix gear/quat: constant pressure requires more than one body");
+  made_target = target;
+  made_rate = target_rate;
+  if (update->nsteps > 0 || begins) find_target(update->ntimestep, h);
+  tell_freedoms_of_box();
+  if (begins) refer_to_box(h);
+  correction = Upper();    // forces are evaluated in the corrected box
+  std::copy_n(domain->prd, 3, begun_box.m.begin());
+  find_longest_body();
+  for (int k = 0; k < 3; ++k) refuse_narrow_box(k, domain->prd[k]);
+  begun_matrix = matrix;
+  frequency.begin_run();
+  strongest = Upper();
+  warned_mesh = false;
+  virial.request(update->ntimestep + 1);
+}
+
+const char *Barostat::reason_to_start_anew() const
+{
+  const char *reason = Thermostat::reason_to_start_anew();
+  if (reason) return reason;
+  constexpr double ROUNDING = 1.0e-12;
+  for (int k = 0; k < Upper::SIZE; ++k) {
+    const double size = std::fabs(target[k]) + std::fabs(made_target[k]);
+    if (std::fabs(target[k] - made_target[k]) > ROUNDING * size ||
+        std::fabs(target_rate[k] - made_rate[k]) >
+            ROUNDING * (std::fabs(target_rate[k]) + std::fabs(made_rate[k])))
+      return "the barostat has another target than in the last steps";
+    if (asked.on[k] && periods[k] != asked.period[k])
+      return "the barostat has another damping time than in the last steps";
+  }
+  return nullptr;
+}
+
+/* ----------------------------------------------------------------------
+   the start
+------------------------------------------------------------------------- */
+
+/// The box keeps its rate.
+void Barostat::refer_to_box(double h)
+{
+  const Upper before = width != 0.0 ? cell.rate(width) : Upper();
+  width = h;
+  target_at_start = target;
+  box.refer();
+  cell.begin(before, h);
+  matrix = begun_matrix = Upper::one();
+  rate = before;
+}
+
+void Barostat::begin_start(const StartNodes &nodes)
+{
+  Thermostat::begin_start(nodes);
+  const double s = nodes.spacing;
+  if (chain_acts()) {
+    const double twice = twice_kinetic_of_box();
+    chain.begin_settled(target_of_box(0.0, nodes.h), twice, nodes.h);
+    held_box =
+        chain.is_stiff(target_of_box(0.0, nodes.h), twice, nodes.h, nodes.collocation.pairs());
+  }
+  const Upper now = drive();
+  note_drive(now);
+  friction_of_box = friction_now();
+  const Upper second = CellHistory::acceleration(matrix, rate, now, friction_of_box);
+  nodes.collocation.begin<Upper::SIZE>(matrix.m.data(), (rate * matrix).scaled(s).m.data(),
+                                       second.scaled(s * s).m.data(), cell_at_nodes);
+  nodes.collocation.begin(0.0, twice_kinetic_of_box(), twice_box_at_nodes);
+  nodes.collocation.begin(heat.value(), rate_of_heat(), heat_at_nodes);
+  note_box();
+}
+
+void Barostat::foretell(const StartNodes &nodes)
+{
+  Thermostat::foretell(nodes);
+  nodes.collocation.foretell(cell_at_nodes);
+  nodes.collocation.foretell(twice_box_at_nodes);
+  nodes.collocation.foretell(heat_at_nodes);
+}
+
+void Barostat::enter_node(const StartNodes &nodes, int node)
+{
+  Upper value, first;
+  nodes.collocation.values_at(node, cell_at_nodes, value.m.data(), first.m.data());
+  matrix = value;
+  rate = first.scaled(1.0 / nodes.spacing) * value.inverse();
+  move_target(node * nodes.spacing);
+  box.set(matrix);
+  box.show(true);
+  for_moved([this](int ibody) {
+    box.to_space(bodies.change_state(ibody));
+  });
+}
+
+void Barostat::visit_node(const StartNodes &nodes, int node)
+{
+  Thermostat::visit_node(nodes, node);
+  sum_present_momenta();
+  if (chain_acts() && !held_box) {
+    const ChainDrive of_box = drive_of(nodes.collocation, twice_box_at_nodes);
+    friction_of_box = chain.flow(target_of_box(0.0, nodes.h), of_box, nodes.spacing, node).y[0];
+  }
+  const Upper second = CellHistory::acceleration(matrix, rate, drive(), friction_of_box);
+  nodes.collocation.set_rates(node, second.scaled(nodes.spacing * nodes.spacing).m.data(),
+                              cell_at_nodes);
+  nodes.collocation.set_rate(node, twice_kinetic_of_box(), twice_box_at_nodes);
+  nodes.collocation.set_rate(node, rate_of_heat(), heat_at_nodes);
+  note_box();
+}
+
+void Barostat::settle(const StartNodes &nodes, int pair)
+{
+  Thermostat::settle(nodes, pair);
+  nodes.collocation.settle(pair, cell_at_nodes);
+  nodes.collocation.settle(pair, twice_box_at_nodes);
+  nodes.collocation.settle(pair, heat_at_nodes);
+}
+
+void Barostat::leave_nodes()
+{
+  move_target(0.0);
+  matrix = cell.matrix();
+  rate = cell.rate(width);
+  box.set(matrix);
+  box.show(true);
+}
+
+void Barostat::seed(const StartNodes &nodes, int pairs, int values)
+{
+  Thermostat::seed(nodes, pairs, values);
+  double of_cell[Upper::SIZE * TaylorSeries::MAX_TERMS], of_heat[Collocation::MAX_NODES + 1];
+  nodes.collocation.expand(cell_at_nodes, pairs, of_cell);
+  cell.seed(of_cell, Collocation::terms_of(pairs), nodes.spacing, nodes.h);
+  const int terms = nodes.collocation.series(heat_at_nodes, pairs, nodes.spacing, of_heat);
+  heat.seed(of_heat, terms, nodes.spacing, nodes.h, values_of_heat);
+  chain.seed(nodes.collocation.rate_at_start(twice_box_at_nodes), pairs, nodes.spacing, values + 1);
+}
+
+void Barostat::seed_local(double h, int terms)
+{
+  Thermostat::seed_local(h, terms);
+  if (chain_acts()) chain.begin_settled(target_of_box(0.0, h), twice_kinetic_of_box(), h);
+  const Upper now = drive();
+  note_drive(now);
+  friction_of_box = friction_now();
+  const Upper second = CellHistory::acceleration(matrix, rate, now, friction_of_box);
+  Upper series[3] = {matrix, (rate * matrix).scaled(h), second.scaled(0.5 * h * h)};
+  cell.seed(series[0].m.data(), terms, h, h);
+  times.begin(SECOND_PAPER - 2, std::fabs(h));
+  const double of_heat[2] = {heat.value(), h * rate_of_heat()};
+  heat.seed(of_heat, 2, h, h, values_of_heat);
+  const double twice = twice_kinetic_of_box();
+  chain.seed(&twice, 0, 0.0, 1);
+}
+
+/* ----------------------------------------------------------------------
+   oscillation of the box: with one evaluation of the forces per step, its limit is the same as for
+   an oscillation of the bodies
+------------------------------------------------------------------------- */
+
+// the mesh of long-range forces is made for edges that differ by less than this
+
+static constexpr double OF_MESH = 0.15;
+
+// limits for the change of the shape of the box under unequal targets
+
+static constexpr double IN_SHAPE = 4.0, OF_HEIGHT = 2.0;
+
+/// Strain for measuring the dependence of the pressure on the box at constant scaled centers:
+/// positions change by less than a tenth of the neighbor skin.
+double Barostat::probing_strain() const
+{
+  const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
+  return std::min(1.0e-3, 0.1 * neighbor->skin / longest);
+}
+
+void Barostat::enter_probe(int side)
+{
+  for (int k = 0; k < 3; ++k)
+    if (asked.on[k]) matrix[k] = 1.0 + side * probing_strain();
+  box.set(matrix);
+  box.show(true);
+  for_moved([this](int ibody) {
+    box.to_space(bodies.change_state(ibody));
+  });
+}
+
+void Barostat::leave_probe(int side)
+{
+  if (side < 0) {
+    drive_of_smaller = drive();
+    return;
+  }
+  const Upper change = drive() - drive_of_smaller;
+  double stiffest = 0.0;
+  for (int k = 0; k < 3; ++k)
+    if (asked.on[k]) stiffest = std::max(stiffest, -change[k] / (2.0 * probing_strain()));
+  frequency.begin(std::sqrt(stiffest));
+  const double radians = frequency.radians(width), part = frequency.part(width);
+  if (part < BoxFrequency::WARNED || changing_step) return;
+  if (part > BoxFrequency::REFUSED)
+    error->all(FLERR,
+               "Fix gear/quat: the box would oscillate by {:.2g} radians in a step, and the method "
+               "follows {:.2g}; use a Pdamp of {:.2g} or longer",
+               radians, frequency.followed(), period_for_box(width));
+  warn_of_box("", width);
+}
+
+/// when: the words before "the box".
+void Barostat::warn_of_box(const std::string &when, double h)
+{
+  warned_box = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: {}the box oscillates by {:.2g} radians in a step, {:.0f} % of "
+                   "the limit of the method; use a Pdamp of {:.2g} or longer",
+                   when, frequency.radians(h), 100.0 * frequency.part(h), period_for_box(h));
+}
+
+double Barostat::longest_step() const
+{
+  return std::min(Thermostat::longest_step(), frequency.longest_step());
+}
+
+void Barostat::watch_box(double h)
+{
+  const Upper now = drive();
+  frequency.note(now, rate, masses(), h);
+  note_drive(now);
+  watch_mesh();
+  if (warned_box || changing_step || !frequency.is_settled()) return;
+  if (frequency.part(h) >= BoxFrequency::WARNED)
+    warn_of_box(fmt::format("in step {} ", update->ntimestep), h);
+}
+
+/// LAMMPS chooses the mesh only before a run, but Ewald's wave vectors in every box.
+void Barostat::watch_mesh()
+{
+  const KSpace *kspace = force->kspace;
+  if (warned_mesh || !kspace || !(kspace->pppmflag || kspace->msmflag)) return;
+  for (int k = 0; k < domain->dimension; ++k) {
+    const double ratio = domain->prd[k] / begun_box[k];
+    if (std::fabs(ratio - 1.0) < OF_MESH) continue;
+    warned_mesh = true;
+    if (comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix gear/quat: in step {} the box is {:.3g} times as long along {} as at the "
+          "beginning of the run, for which the mesh of kspace style {} was chosen; begin "
+          "another run",
+          update->ntimestep, ratio, "xyz"[k], force -> kspace_style);
+    return;
+  }
+}
+
+Cause Barostat::instability(double h) const
+{
+  if (frequency.part(h) < 1.0) return Thermostat::instability(h);
+  return {fmt::format("The box became unstable first: it oscillates by {:.2g} radians in a step of "
+                      "{:g}, and the method follows {:.2g}",
+                      frequency.radians(h), h, frequency.followed()),
+          fmt::format("Use a Pdamp of {:.2g} or longer", frequency.needed_period(h))};
+}
+
+/// Collective.
+void Barostat::find_longest_body()
+{
+  double here = 0.0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    here = std::max(here, bodies.body_at(ibody).extent);
+  longest_body = over_ranks(MPI_MAX, here, world);
+}
+
+/// In such a box a body overlaps with its own images, and atoms are lost.
+void Barostat::refuse_narrow_box(int direction, double edge) const
+{
+  if (!asked.on[direction] || edge > longest_body) return;
+  error->all(
+      FLERR,
+      "Fix gear/quat: in step {} the edge of the box along {}, {:.4g}, would be shorter than "
+      "a body, whose atoms are {:.4g} apart; use more bodies, a smaller target pressure, or "
+      "iso, which keeps the shape of the box",
+      update->ntimestep, "xyz"[direction], edge, longest_body);
+}
+
+/// The box is predicted, but LAMMPS still has the old box.
+void Barostat::refuse_box() const
+{
+  const Upper &before = box.matrix();
+  for (int k = 0; k < 3; ++k) {
+    const double ratio = matrix[k] / before[k];
+    if (!(std::fabs(ratio - 1.0) < IN_A_STEP))
+      error->all(
+          FLERR,
+          "Fix gear/quat: in step {} the box would change its length along {} from {:.4g} by "
+          "the factor {:.3g}; begin nearer to the target pressure, or use a Pdamp of {:.2g} or "
+          "longer, unless a fluid tears under a target that is negative or too small",
+          update->ntimestep, "xyz"[k], domain -> prd[k], ratio,
+          std::max(period_for_drive(0.0), rounded_up(1.05 * period())));
+    refuse_narrow_box(k, domain->prd[k] * ratio);
+  }
+  double deviates = 0.0;
+  const double mean = mean_target(target);
+  for (int k = 0; k < Upper::SIZE; ++k)
+    if (asked.on[k]) deviates = std::max(deviates, std::fabs(target[k] - (k < 3 ? mean : 0.0)));
+  if (deviates <= 1.0e-12 * std::fabs(mean)) return;
+  double stretch[2] = {HUGE_VAL, 0.0}, sheared = 0.0;
+  for (int k = 0; k < domain->dimension; ++k) {
+    const double now = domain->prd[k] / begun_box[k];
+    stretch[0] = std::min(stretch[0], now);
+    stretch[1] = std::max(stretch[1], now);
+  }
+  const Upper strain = matrix * begun_matrix.inverse();    // invariant under flips
+  for (int k = 3; k < Upper::SIZE; ++k) sheared = std::max(sheared, std::fabs(strain[k]));
+  if (stretch[1] < IN_SHAPE * stretch[0] && sheared < OF_HEIGHT) return;
+  error->all(FLERR,
+             "Fix gear/quat: in step {} the box has edges of {:.4g}, {:.4g} and {:.4g}, and {} "
+             "in this run, because the targets of the pressure are unequal or have shear "
+             "components, which a liquid cannot sustain; use iso, or aniso with equal targets, "
+             "unless the system is solid",
+             update->ntimestep, domain->prd[0], domain->prd[1], domain->prd[2],
+             sheared < OF_HEIGHT
+                 ? fmt::format("their ratio has changed by a factor of {:g}", IN_SHAPE)
+                 : fmt::format("it was sheared by {:g} times its height", OF_HEIGHT));
+}
+
+/* ----------------------------------------------------------------------
+   restart
+------------------------------------------------------------------------- */
+
+void Barostat::fields(Fields &v)
+{
+  double temperature = words.start;
+  Thermostat::fields(v);
+  v(temperature, kt, width, target, target_rate, correction, periods, virial, box, cell, heat,
+    chain, frequency);
+  if (changing_step) v(times);
+  if (!v.reads()) return;
+  if (!acts() && asked.temperature == 0.0) words.start = words.stop = temperature;
+  matrix = cell.matrix();
+  if (width != 0.0) rate = cell.rate(width);
+  box.resume(matrix);
 }

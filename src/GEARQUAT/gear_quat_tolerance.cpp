@@ -11,10 +11,14 @@
 #include "gear_quat_scene.h"
 
 #include "comm.h"
+#include "compute.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
+#include "neighbor.h"
+#include "output.h"
+#include "pair.h"
 #include "update.h"
 #include "utils.h"
 
@@ -244,4 +248,329 @@ void Tolerance::fields(Fields &v)
 {
   v(record, growing, remembered);
   present.rows = remembered.values();
+}
+
+// no step moves a site by more than this part of the neighbor skin, so that the onset of a force is
+// detected before the body has moved far into its range
+
+static constexpr double PART_OF_SKIN = 0.25;
+
+// limit for the motion between two steps at which lists may be rebuilt
+
+static constexpr double PART_UNSEEN = 0.5;
+
+// a step that has failed this many times is no longer repeated
+
+static constexpr int MOST_TRIES = 40;
+
+// a smaller part of a step counts as no time
+
+static constexpr double ROUNDING_OF_TIME = 1.0e-6;
+
+/* ---------------------------------------------------------------------- */
+
+void Tolerance::begin_step()
+{
+  if (update->dt != time_step.length()) put_back_begun_step();
+  if (update->ntimestep == update->firststep + 1) begin_run();
+  tries = 0;
+  begun_with = update->dt;
+  refuse_frozen();
+  if (repeat.possible()) bodies.keep_histories();
+}
+
+/// The first step of a run.
+void Tolerance::begin_run()
+{
+  repeat.begin_run();
+  const double fastest = over_ranks(MPI_MAX, largest_speed(), world);
+  const double farthest = farthest_step(fastest);
+  const bool moves_limit = fastest > 0.0 && farthest >= control.shortest;
+  if (moves_limit && control.longest > farthest && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat tolerance: dtmax {:.3g} is longer than the {:.3g} in which the "
+                   "fastest site moves by {:.3g}; steps are not longer than that",
+                   control.longest, farthest, limit_of_motion());
+}
+
+Correction Tolerance::correct(const Integrator &integrator, int ibody, const Load &load)
+{
+  StepErrors one;
+  const Body &body = bodies.body_at(ibody);
+  const Correction correction = remembered.correct(integrator, body.rigid, body.reach(), load,
+                                                   bodies.axes(ibody), bodies.history(ibody), one);
+  include(control.counted(one, rounding(integrator, ibody, load)));
+  return correction;
+}
+
+StepErrors Tolerance::rounding(const Integrator &integrator, int ibody, const Load &load) const
+{
+  const Body &body = bodies.body_at(ibody);
+  return RememberedLoads::rounding(integrator, body.rigid, body.reach(), load,
+                                   bodies.history(ibody));
+}
+
+void Tolerance::include(StepErrors one)
+{
+  double &error = control.energy ? one.energy : one.length;
+  if (!std::isfinite(error)) error = std::numeric_limits<double>::infinity();
+  errors.include(one);
+}
+
+void Tolerance::note_prediction()
+{
+  predicted.begin(bodies.nmoved());
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+    predicted[ibody] = RememberedLoads::accelerations(bodies.history(ibody));
+}
+
+void Tolerance::note_correction(const Integrator &integrator, const Coupling &coupling)
+{
+  for (const auto *list : {&bodies.points, &bodies.tops})
+    for (const int ibody : *list) {
+      const Body &body = bodies.body_at(ibody);
+      const Load load = bodies.acting(ibody);
+      const StepErrors one =
+          remembered.errors(integrator, body.rigid, body.reach(), load, bodies.axes(ibody),
+                            predicted[ibody], bodies.history(ibody));
+      include(control.counted(one, rounding(integrator, ibody, load)));
+    }
+  coupling.errors(update->dt, integrator.values(), [this](const StepErrors &one) {
+    include(one);
+  });
+}
+
+/// An upper limit for the speeds of sites on this rank.
+double Tolerance::largest_speed() const
+{
+  double largest = 0.0;
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    const BodyState &s = bodies.state_of(ibody);
+    const double speed = length(s.velocity) + bodies.body_at(ibody).reach() * length(s.omega_body);
+    largest = std::max(largest, speed);
+  }
+  return largest;
+}
+
+/// Steps in which LAMMPS does not test the neighbor lists.
+double Tolerance::steps_unseen() const
+{
+  const double every = neighbor->every;
+  if (neighbor->build_once) return 1.0;
+  return every * std::max(1.0, std::ceil(neighbor->delay / every));
+}
+
+/// Maximum displacement of a site in a step, infinite if the range of the forces is unknown.
+double Tolerance::limit_of_motion() const
+{
+  double range = neighbor->skin > 0.0 ? neighbor->skin : std::numeric_limits<double>::infinity();
+  if (force->pair && force->pair->cutforce > 0.0) range = std::min(range, force->pair->cutforce);
+  return range * std::min(PART_OF_SKIN, PART_UNSEEN / steps_unseen());
+}
+
+/// Without motion the effect of a longer step is unknown.
+double Tolerance::farthest_step(double speed) const
+{
+  return speed == 0.0 ? std::fabs(update->dt) : limit_of_motion() / speed;
+}
+
+bool Tolerance::accepts()
+{
+  double here[] = {errors.length,  errors.energy, errors.fewer,
+                   errors.same,    errors.more,   bodies.fresh.empty() ? 0.0 : 1.0,
+                   largest_speed()};
+  const auto all = over_ranks(MPI_MAX, here, world);
+  errors = {all[0], all[1], all[2], all[3], all[4]};
+  fresh = all[5] != 0.0;
+  speed = all[6];
+  if (repeat.possible() && control.fails(step_error(), update->dt) && tries < MOST_TRIES) {
+    ++tries;
+    record.repeated += 1.0;
+    failed = control.repeat(step_error(), update->dt, remembered.loads(), growing);
+    errors = StepErrors();
+    return false;
+  }
+  if (!std::isfinite(step_error()) || tries == MOST_TRIES) refuse_lost();
+  if (record.steps == 0.0 && tries > 0) tell_of_first_step(begun_with);
+  remembered.conclude(update->dt);
+  return true;
+}
+
+void Tolerance::refuse_lost() const
+{
+  if (tries == MOST_TRIES)
+    error->all(
+        FLERR,
+        "Fix gear/quat tolerance: step {} was tried {} times, and its error is {:.2g} still at a "
+        "time step of {:.3g}; the forces are not continuous, or the tolerance is smaller "
+        "than their rounding",
+        update->ntimestep, tries + 1, shown(step_error()), update->dt);
+  error->all(FLERR,
+             "Fix gear/quat tolerance: the estimated error of step {} is not a number; the forces "
+             "are wrong, or the motion is lost: use a smaller tolerance",
+             update->ntimestep);
+}
+
+/// Refuses a step so short that the time would not change.
+void Tolerance::refuse_frozen() const
+{
+  const double begun = time_step.beginning();
+  const auto refuse = [&](const char *keyword, double interval, const char *remedy) {
+    if (interval > 0.0 && begun + interval == begun)
+      error->all(
+          FLERR,
+          "Fix gear/quat {}: in step {} an interval of {:.3g} is below the last digit of the "
+          "time {:.9g}, which would not advance; {}",
+          keyword, update->ntimestep, interval, begun, remedy);
+  };
+  refuse("dtmax", control.longest, "use a larger dtmax");
+  refuse("every/time", every_time, "use a larger interval");
+  refuse("tolerance", std::fabs(update->dt), "use a larger tolerance, or dtmin");
+}
+
+void Tolerance::shorten_loads()
+{
+  change_loads(failed.loads);
+}
+
+void Tolerance::shorten_step()
+{
+  time_step.change_begun(failed.step);
+  refuse_frozen();
+}
+
+double Tolerance::shown(double error) const
+{
+  return control.energy ? error * force->mvv2e : error;
+}
+
+double Tolerance::choose(double permitted)
+{
+  const double step = update->dt;
+  note_step(std::fabs(step));
+  auto next =
+      control.next(errors, step, remembered, growing, std::min(permitted, farthest_step(speed)));
+  if (fresh) {    // fresh histories have the present load only
+    next.loads = 1;
+    growing = Growth();
+    next.step = std::copysign(std::min(std::fabs(next.step), first_step()), step);
+  }
+  if (next.held) {
+    record.held += 1.0;
+    if (!warned_held && comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix gear/quat tolerance: after step {} dtmin keeps the time step at {:.3g}, longer than "
+          "the tolerance or the motion permits; further such steps are counted",
+          update->ntimestep, control.shortest);
+    warned_held = true;
+  }
+  errors = StepErrors();
+  change_loads(next.loads);
+  if (fresh) remembered.begin();
+  fresh = false;
+  return even(next.step, time_step.end());
+}
+
+/// The next time at which a step has to end, infinite if there is none: a multiple of every_time,
+/// or a dump in intervals of time.  step: positive; now: its beginning.
+double Tolerance::next_output(double step, double now) const
+{
+  const double nearest = now + ROUNDING_OF_TIME * step;    // earlier times belong to the last step
+  double next = std::numeric_limits<double>::infinity();
+  if (every_time > 0.0) next = (std::floor(now / every_time) + 1.0) * every_time;
+  if (next <= nearest) next += every_time;
+  for (int n = 0; n < output->ndump; ++n) {
+    if (output->mode_dump[n] == 0) continue;
+    double at = output->next_time_dump[n];
+    if (at <= nearest) at += output->every_time_dump[n];    // it is written now
+    if (at > nearest) next = std::min(next, at);
+  }
+  return next;
+}
+
+/// Equal steps that end at the next output if it is due within a few steps; the last step ends
+/// there to the last bit. now: the beginning of the step.
+double Tolerance::even(double step, double now) const
+{
+  if (step <= 0.0) return step;
+  const double next = next_output(step, now), way = next - now;
+  if (!std::isfinite(next) || !(way > 0.0)) return step;
+  const double size = even_step(step, way);
+  if (way > 1.5 * size)    // rounding of the time is no reason to change the step
+    return std::fabs(size - step) < ROUNDING_OF_TIME * step ? step : size;
+  double last = way;
+  for (int n = 0; n < 4 && now + last != next; ++n)
+    last = std::nextafter(last, now + last < next ? HUGE_VAL : 0.0);
+  return last;
+}
+
+void Tolerance::announce_output()
+{
+  const bool by_time =
+      every_time > 0.0 && output->thermo_every == 0 && output->var_thermo == nullptr;
+  announced = by_time ? update->ntimestep + 1 : -1;
+  if (by_time) modify->addstep_compute_all(announced);
+}
+
+void Tolerance::order_output()
+{
+  const bigint now = update->ntimestep;
+  const auto is_even = [this](double time, double step) {
+    const double off = time - std::round(time / every_time) * every_time;
+    return std::fabs(off) < ROUNDING_OF_TIME * std::fabs(step);
+  };
+  if (announced == now && is_even(update->atime, update->dt))
+    output->next = output->next_thermo = now;
+  announced = -1;
+  if (every_time > 0.0 && is_even(update->atime + update->dt, update->dt)) announce_output();
+}
+
+/// Adds the present step to the sums for the outputs.
+void Tolerance::note_step(double size)
+{
+  record.smallest = record.steps == 0.0 ? size : std::min(record.smallest, size);
+  record.steps += 1.0;
+  record.time += size;
+  record.loads += remembered.loads();
+  record.largest = std::max(record.largest, step_error() / control.eps);
+  record.last_length = errors.length;
+  record.last_energy = errors.energy;
+}
+
+/* ----------------------------------------------------------------------
+   another evaluation of the forces
+------------------------------------------------------------------------- */
+
+void Repeat::begin_run()
+{
+  forces.reset(new Forces(lmp, {owner}));
+  const std::string why = reason();
+  if (why.empty()) return;
+  forces.reset();
+  if (comm->me == 0 && why != told)
+    utils::logmesg(lmp,
+                   "Fix gear/quat tolerance: no step is repeated, because {}; errors exceed the "
+                   "tolerance where forces change suddenly\n",
+                   why);
+  told = why;
+}
+
+/// The reason why steps cannot be repeated, empty if they can.
+std::string Repeat::reason() const
+{
+  if (!forces->reason().empty()) return forces->reason();
+  for (const auto *one : modify->get_compute_list())
+    if (known(ComputeFact::ADDS_UP, one))
+      return fmt::format("compute {} ({}) adds up every evaluation of forces", one->id, one->style);
+  return "";
+}
+
+void Repeat::evaluate(int vflag)
+{
+  modify->clearstep_compute();             // computes have evaluated other positions
+  const bigint now = update->ntimestep;    // as set by Integrate::ev_set()
+  const int eflag = (update->eflag_global == now ? ENERGY_GLOBAL : 0) |
+      (update->eflag_atom == now ? ENERGY_ATOM : 0);
+  forces->evaluate(eflag, vflag);
 }
