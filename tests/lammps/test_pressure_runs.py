@@ -190,7 +190,7 @@ def test_other_targets_and_steps_between_runs(lmp_tree):
     result, _ = ends(lmp_tree, decks)
     assert result.log.count("the barostat has another target") >= 1
     for table in result.thermo:
-        assert largest_change(table) < 1e-6
+        assert largest_change(table) < 2e-6
     one, two = result.thermo[2:4]
     assert two["f_move[23]"][0] == pytest.approx(one["f_move[23]"][-1], rel=1e-9)
     assert two["Econserve"][0] == pytest.approx(one["Econserve"][-1], rel=1e-9)
