@@ -113,10 +113,6 @@ void Arguments::parse_keywords(int narg, char **arg)
                  "Fix gear/quat keyword {} requires formulation second or first: formulation "
                  "momentum neither repeats corrections nor projects quaternions",
                  keyword);
-  if (isokinetic != Isokinetic::NONE && scheme.formulation == Formulation::SECOND)
-    error->all(FLERR,
-               "Fix gear/quat keyword isokinetic requires formulation momentum or first: its "
-               "constraint acts on momenta, which formulation second does not have");
   check_ranges();
   if (is_on("tolerance", "")) check_control();
   check_pressure();

@@ -123,7 +123,7 @@ class Integrator : public Kinematics {
   }
 
   // With a friction that depends on all bodies: begin(), [friction] and correct_pass() for each
-  // pass, finish(), and with a constant kinetic energy scale_momenta().
+  // pass, finish(), and in the first-order form also scale_momenta().
 
   struct Residual {    ///< summed over the passes
     double x[3];
@@ -199,29 +199,23 @@ class Integrator : public Kinematics {
     return conclude(load, rows, pending);
   }
 
-  /// Not in formulation second.  A rotation about an axis without inertia does not change: it has no
-  /// momentum.
+  /// A rotation about an axis without inertia does not change: it has no momentum.
   void scale_momenta(const RigidBody &body, const Multipliers &factor, double *rows) const
   {
     double change[3];
-    if (scheme.momentum()) {
-      const double *rates = rows + Scheme::SECOND_WIDTH;
-      for (int part = 0; part < 2; ++part) {
-        const int column = part == 0 ? Scheme::POSITION : Scheme::ANGULAR_MOMENTUM;
-        const double by = (part == 0 ? factor.translation : factor.rotation) - 1.0;
-        for (int i = 0; i < 3; ++i) change[i] = by * rates[column + i];
-        if (scheme.compensate)
-          Momenta<2>::template add<3>(rows, n, 1, column, change);
-        else
-          Momenta<0>::template add<3>(rows, n, 1, column, change);
-      }
-      return;
-    }
     for (int i = 0; i < 3; ++i) change[i] = (factor.translation - 1.0) * rows[Scheme::MOMENTUM + i];
     add_first(rows, Scheme::MOMENTUM, change);
     for (int i = 0; i < 3; ++i)
       change[i] = body.inertia[i] > 0.0 ? (factor.rotation - 1.0) * rows[Scheme::OMEGA + i] : 0.0;
     add_first(rows, Scheme::OMEGA, change);
+  }
+
+  /// Advances the n rows of y with y' = rate to t + h, with step and coefficients of the momenta.
+  void advance(double *rows_of_scalar, double rate) const
+  {
+    Nordsieck<1>::predict(rows_of_scalar, n);
+    const double residual = h * rate - rows_of_scalar[1];
+    Nordsieck<1>::correct<1>(rows_of_scalar, n, corrector.c.data(), 0, &residual);
   }
 
   /// Formulation momentum: moves and turns a body, and changes its momenta.  place: as in row 0, with

@@ -18,17 +18,8 @@ using namespace GearQuat;
 IsokineticConstraint::IsokineticConstraint(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme,
                                            Isokinetic mode, bool rescale) :
     Coupling(lmp, bodies),
-    mode(mode), scales(rescale), heat_at_nodes()
+    scheme(scheme), mode(mode), scales(rescale), heat_at_nodes()
 {
-  set_scheme(scheme);
-}
-
-void IsokineticConstraint::set_scheme(const Scheme &scheme)
-{
-  Scheme of_heat;
-  of_heat.formulation = Formulation::FIRST;
-  of_heat.rows = values_of_heat = std::min(scheme.values(), FIRST_MOST);
-  heat_coefficients = CorrectorCoefficients(of_heat).c;
 }
 
 /// Sums the contributions of owned bodies over all ranks, and resets the local sums.
@@ -91,7 +82,7 @@ void IsokineticConstraint::add_prediction(const Integrator &, int ibody,
 void IsokineticConstraint::end_passes(const Integrator &integrator)
 {
   sum();
-  heat.advance(heat_coefficients.data(), values_of_heat, integrator.step(), sums.power());
+  heat.advance(integrator, sums.power());
   if (counted != bodies.number()) {    // some were removed, with their energy
     target = sums;
     counted = bodies.number();
@@ -120,13 +111,13 @@ void IsokineticConstraint::seed(const StartNodes &nodes, int pairs, int /*values
 {
   double series[Collocation::MAX_NODES + 1];
   const int terms = nodes.collocation.series(heat_at_nodes, pairs, nodes.spacing, series);
-  heat.seed(series, terms, nodes.spacing, nodes.h, values_of_heat);
+  heat.seed(series, terms, nodes.spacing, nodes.h, scheme.values());
 }
 
 void IsokineticConstraint::seed_local(double h, int /*terms*/)
 {
   const double series[2] = {0.0, h * sums.power()};
-  heat.seed(series, 2, h, h, values_of_heat);
+  heat.seed(series, 2, h, h, scheme.values());
 }
 
 double IsokineticConstraint::element(int n)

@@ -41,8 +41,8 @@ class IsokineticConstraint : public Coupling {
   {
     correct_by_passes(*this, integrator, passes);
   }
-  void set_scheme(const Scheme &scheme) override;
-  void rescale(double ratio) override { heat.rescale(ratio, values_of_heat); }
+  void set_scheme(const Scheme &other) override { scheme = other; }
+  void rescale(double ratio) override { heat.rescale(ratio, scheme.values()); }
 
   void begin_start(const StartNodes &nodes) override;
   void foretell(const StartNodes &nodes) override { nodes.collocation.foretell(heat_at_nodes); }
@@ -63,6 +63,7 @@ class IsokineticConstraint : public Coupling {
  private:
   friend class Coupling;    // calls the functions required by correct_by_passes()
 
+  Scheme scheme;
   Isokinetic mode;
   bool scales;    ///< momenta after a step
 
@@ -73,8 +74,6 @@ class IsokineticConstraint : public Coupling {
   Multipliers factor;
   bigint counted = 0;    ///< number of bodies in the target
   ScalarHistory heat;
-  int values_of_heat;
-  CorrectorCoefficients::Array heat_coefficients;    ///< of an equation of the first order
   Collocation::Scalar heat_at_nodes;
 
   void sum();

@@ -106,7 +106,9 @@ static const std::vector<Keyword> TABLE = {
             a.isokinetic = v.is("total") ? Isokinetic::TOTAL
                 : v.is("separate")       ? Isokinetic::SEPARATE
                                          : Isokinetic::NONE;
-          }).word({"none", "total", "separate"}),
+          }).word({"none", "total", "separate"})
+      .requires_also({"formulation", "first", "its constraint is part of equations of the first "
+                      "order"}),
   Keyword("rescale", PHYSICS, "whether momenta are scaled to exactly that energy",
           [](Arguments &a, const Value &v) { a.rescale = v.is("yes"); })
       .word({"yes", "no"}).requires_also({"isokinetic", "", ""}),

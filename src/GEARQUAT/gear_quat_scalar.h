@@ -36,6 +36,8 @@ class ScalarHistory {
   /// Changes the step; ratio = new step / old step.
   void rescale(double ratio, int values) { Nordsieck<1>::rescale(rows.data(), values, ratio); }
 
+  /// Advances to the end of the step, where y' = rate.
+  void advance(const Integrator &integrator, double rate) { integrator.advance(rows.data(), rate); }
   /// One step with the coefficients of a first-order equation.
   void advance(const double *coefficients, int values, double h, double rate)
   {

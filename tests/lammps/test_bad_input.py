@@ -106,7 +106,7 @@ ARGUMENTS = {
     "molecule torque left on on off": "torque: bodies left are neither a number from 1 to 2",
     "molecule mol some force * on on off": "keyword force cannot be used with mol: the numbers of bodies",
     "molecule formulation first isokinetic both": "isokinetic: unknown value both (none, total or separate)",
-    "molecule formulation second isokinetic total": "keyword isokinetic requires formulation momentum or first: its constraint",
+    "molecule isokinetic total": "keyword isokinetic requires formulation first: its constraint",
     "molecule rescale yes": "keyword rescale requires keyword isokinetic",
     "molecule formulation first isokinetic none rescale no": "rescale requires keyword isokinetic",
     "molecule formulation first isokinetic total tolerance 1": "formulation cannot be used with tolerance",

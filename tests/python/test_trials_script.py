@@ -177,14 +177,14 @@ def test_what_is_left_out_is_said():
     assert script.for_trials(plain) == (plain, []) and script.translate(plain)[1] == []
 
 
-def test_isokinetic_runs_are_not_tried_in_formulation_second():
+def test_isokinetic_runs_are_tried_in_their_formulation_only():
     line = parse("fix 1 a gear/quat molecule formulation first isokinetic total")
     first = "formulation first values 5"
-    assert line.takes(first) and line.takes("values 5") and not line.takes("formulation second")
+    assert line.takes(first) and not line.takes("formulation second") and not line.takes("values 5")
     assert (
         line.with_numerics(first).text() == f"fix 1 a gear/quat molecule {first} isokinetic total"
     )
-    with pytest.raises(DeckError, match="keyword isokinetic: formulation second has no momenta"):
+    with pytest.raises(DeckError, match="keyword isokinetic: it belongs to formulation first"):
         line.with_numerics("formulation second")
     assert parse("fix 1 a gear/quat molecule isokinetic none").takes("formulation second")
 

@@ -102,9 +102,6 @@ struct Host {
     }
   };
 
-  const int values_of_heat = std::min(scheme.values(), FIRST_MOST);
-  const CorrectorCoefficients of_heat{scheme_of(FIRST, values_of_heat)};
-
   void start()
   {
     double power = 0.0;
@@ -120,7 +117,7 @@ struct Host {
            rows[b].data());
     double series[Collocation::MAX_NODES + 1];
     const int terms = collocation.series(search.heat, found.pairs, h, series);
-    heat.seed(series, terms, h, h, values_of_heat);
+    heat.seed(series, terms, h, h, scheme.values());
   }
 
   void read_states()
@@ -148,13 +145,13 @@ struct Host {
     for (size_t b = 0; b < bodies.size(); ++b)
       pending.push_back(
           integrator.begin(loads[b], integrator.axes_of(rows[b].data()).data(), rows[b].data()));
-    for (int pass = 0; pass < scheme.coupled_passes(); ++pass) {
+    for (int pass = 0; pass < scheme.passes; ++pass) {
       const Multipliers alpha = multipliers(mode, pending_sums(loads, pending));
       for (size_t b = 0; b < bodies.size(); ++b)
         integrator.correct_pass(bodies[b], loads[b], Friction(alpha), rows[b].data(), pending[b]);
     }
     const KineticSums found = pending_sums(loads, pending);
-    heat.advance(of_heat.c.data(), values_of_heat, h, found.power());
+    heat.advance(integrator, found.power());
     const Multipliers factor = scale_factors(mode, target, found);
     for (size_t b = 0; b < bodies.size(); ++b) {
       integrator.finish(bodies[b], loads[b], rows[b].data(), pending[b]);

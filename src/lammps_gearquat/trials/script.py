@@ -185,7 +185,7 @@ class FixLine:
     def takes(self, text):
         """True if the keywords in ``text`` are compatible with the keywords that define bodies and equations of
         motion."""
-        return not self.isokinetic or dict(pairs(text)).get("formulation") != ("second",)
+        return not self.isokinetic or dict(pairs(text)).get("formulation") == ("first",)
 
     def with_numerics(self, text):
         """This line with its keywords about integration replaced by ``text``.
@@ -194,7 +194,7 @@ class FixLine:
         """
         if not self.takes(text):
             raise DeckError(
-                f"fix {self.id}, keyword isokinetic: formulation second has no momenta, so it cannot"
+                f"fix {self.id}, keyword isokinetic: it belongs to formulation first, so it cannot"
                 f" be tried with '{text}'"
             )
         kept = self.only(*_PHYSICAL)
