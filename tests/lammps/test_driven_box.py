@@ -70,7 +70,6 @@ def test_what_a_run_has_used_may_be_deleted(lmp_tree, ranks):
 
 THERMOSTATS = ["", "temp 0.7 0.9 0.8 thermostat separate"]
 SCHEMES = {"values 5": 5, "values 7": 7, "values 9": 9, "values 6 corrector gear": 6, "formulation first values 8": 8}
-SCHEMES |= {"formulation second values 7": 7}
 
 
 # a flow that is part of the velocities is not heat, so temp refuses it
