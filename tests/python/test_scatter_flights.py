@@ -237,10 +237,10 @@ def test_it_flies_until_errors_are_small(tmp_path):
 def test_flights_that_never_part_are_named(tmp_path):
     """There are few unparted flights here; if there were many, no number of flights could compensate for them."""
     deck, out = colliding.write(tmp_path), tmp_path / "out"
-    output = run(deck, out, *WHOLE, "--count", "64", "--steps", "435")
+    output = run(deck, out, *WHOLE, "--count", "64", "--steps", "330")
     counts = json.loads((out / "results.json").read_text())["flights"]
     assert 0 < counts["unparted"] < 32 and "Unparted: " in output and "errors include their whole contribution" in output
-    result = CliRunner().invoke(main, ["scatter", str(deck), "--out", str(out), *WHOLE, "--steps", "435", "--error", "1e-3"])
+    result = CliRunner().invoke(main, ["scatter", str(deck), "--out", str(out), *WHOLE, "--steps", "330", "--error", "1e-3"])
     assert result.exit_code == 1 and "more --steps are required, with another --out" in " ".join(result.output.split())
 
 

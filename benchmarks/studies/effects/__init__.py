@@ -134,7 +134,7 @@ def find(results):
         "apart": more,
         "cage": results.cage,
         "sizes": results.sizes,
-        "fixed": plan.FIXED,
+        "tolerance": plan.TOLERANCE,
         "temp": plan.TEMP,
     }
     return Finding([*idle, more], tables, {"effects": panels(results)}, context)
