@@ -185,11 +185,12 @@ inline const TunedSet *tuned_set(int values)
 }
 
 /// Three values have the coefficients of velocity Verlet, c = (0, 1, 1).  Where velocities are read
-/// with the forces, they are then those of half a step before.
+/// with the forces, they are then those of half a step before.  One remembered load has as many rows,
+/// and is another method.
 constexpr int VERLET = 3;
 inline bool is_verlet(const Scheme &scheme)
 {
-  return !scheme.first() && scheme.values() == VERLET;
+  return !scheme.first() && !scheme.remembers && scheme.values() == VERLET;
 }
 
 /// With a separate c_0, positions have an error of h^(N-1) that is bounded in time.

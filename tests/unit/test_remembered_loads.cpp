@@ -182,6 +182,15 @@ TEST(RememberedLoads, OrdersOfErrors)
   }
 }
 
+TEST(RememberedLoads, OneLoadIsNotVelocityVerlet)
+{
+  // which has as many rows, and shows the forces velocities of half a step before
+  const Scheme one = RememberedLoads::scheme(false);
+  EXPECT_EQ(one.values(), VERLET);
+  EXPECT_FALSE(is_verlet(one));
+  EXPECT_TRUE(is_verlet(scheme_of(MOMENTUM, VERLET)));
+}
+
 TEST(RememberedLoads, LoadsComeAndGoWithoutAnError)
 {
   Following body(1e-9, 0.05);
