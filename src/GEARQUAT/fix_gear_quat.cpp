@@ -94,7 +94,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   extracts.reset(new Extract(lmp, *bodies, *ownership, *sums, args->mol));
   maxexchange = ownership->max_exchange();
   comm_forward = ownership->max_forward();
-  comm_reverse = sizeof(Load) / sizeof(double);
+  comm_reverse = Ownership::MOST_NUMBERS;
 
   if (group->dynamic[igroup])
     error->all(

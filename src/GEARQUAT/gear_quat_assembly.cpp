@@ -423,13 +423,6 @@ void Assembly::take_given(const GivenBody &given_body, int part)
   domain->unmap(one.state.center, image);
 }
 
-double Assembly::memory_usage() const
-{
-  return parts.memory_usage() + made.capacity() * sizeof(Made) + sizes.capacity() * sizeof(Sizes) +
-      extremes.capacity() * sizeof(Extremes) + moments.capacity() * sizeof(Moments) +
-      parts.number() * sizeof(Momenta);
-}
-
 static constexpr double ROUNDED = 1.0e-3;     // of a moment written with few digits
 static constexpr double HALF = 0.5;           // of a period
 static constexpr double SAME = 1.0e-9;        // of moments, relative

@@ -88,7 +88,6 @@ class Assembly : protected Pointers {
   }
   /// Warns of bodies of the same atom types with different shapes.  True if there are any.
   bool warn_of_shapes() const;
-  double memory_usage() const;
 
  private:
   const GivenBodies &given;

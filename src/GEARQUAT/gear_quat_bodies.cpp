@@ -5,98 +5,98 @@
 
 #include "gear_quat_bodies.h"
 
+#include <cstring>
+
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
-Bodies::Bodies(const Scheme &scheme) :
-    scheme(scheme), row_size(scheme.size() * (scheme.remembers ? 2 : 1))
+Bodies::Bodies(const Scheme &scheme)
 {
+  set_scheme(scheme);
 }
 
 void Bodies::set_scheme(const Scheme &other)
 {
   scheme = other;
   row_size = scheme.size() * (scheme.remembers ? 2 : 1);
-  rows.assign((size_t) nmove * row_size, 0.0);
+  rows.assign((size_t) nhere() * row_size, 0.0);
 }
 
 /* ----------------------------------------------------------------------
-   list of bodies
+   the columns
 ------------------------------------------------------------------------- */
 
 void Bodies::resize(int nhere)
 {
   ++nlayouts;
-  body.resize(nhere);
-  state.resize(nhere);
-  load.resize(nhere);
-  last.resize(nhere);
-  frame.resize(nhere);
-}
-
-void Bodies::drop_copies()
-{
-  resize(nown);
-  rows.resize((size_t) nown * row_size, 0.0);
-  large.clear();
-  nmove = nown;
-}
-
-int Bodies::add_owned()
-{
-  ++nown;
-  return add_copy();
-}
-
-int Bodies::add_copy()
-{
-  resize(++nmove);
-  rows.resize((size_t) nmove * row_size, 0.0);
-  return nmove - 1;
-}
-
-int Bodies::add_ghost()
-{
-  resize(nhere() + 1);
-  return nhere() - 1;
+  for_columns(*this, ALL, [nhere](auto &column, int width) {
+    column.resize((size_t) nhere * width);
+  });
 }
 
 void Bodies::remove_owned(int ibody)
 {
-  const int end = nown - 1;
-  if (ibody != end) {
-    body[ibody] = body[end];
-    state[ibody] = state[end];
-    load[ibody] = load[end];
-    last[ibody] = last[end];
-    std::copy_n(history(end), row_size, history(ibody));
-  }
-  --nown;
+  const int end = --nown;
+  for_columns(*this, MOVING, [=](auto &column, int width) {
+    std::copy_n(&column[(size_t) end * width], width, &column[(size_t) ibody * width]);
+  });
   drop_copies();
 }
 
 void Bodies::permute(const std::vector<int> &from)
 {
   ++nlayouts;
-  const auto permute_column = [&from](auto &column, int width) {
-    auto before = column;
+  for_columns(*this, MOVING, [&from](auto &column, int width) {
+    const auto before = column;
     for (size_t n = 0; n < from.size(); ++n)
       std::copy_n(&before[(size_t) from[n] * width], width, &column[n * width]);
-  };
-  permute_column(body, 1);
-  permute_column(state, 1);
-  permute_column(load, 1);
-  permute_column(last, 1);
-  permute_column(rows, row_size);
+  });
 }
 
-void Bodies::clear()
+int Bodies::packed_size(Part part) const
 {
-  nown = 0;
-  drop_copies();
+  size_t bytes = 0;
+  for_columns(*this, part, [&bytes](const auto &column, int width) {
+    bytes += width * sizeof(column[0]);
+  });
+  return (int) (bytes / sizeof(double));
 }
+
+int Bodies::pack(int ibody, Part part, double *buf) const
+{
+  char *to = reinterpret_cast<char *>(buf);
+  for_columns(*this, part, [&to, ibody](const auto &column, int width) {
+    const size_t bytes = width * sizeof(column[0]);
+    std::memcpy(to, &column[(size_t) ibody * width], bytes);
+    to += bytes;
+  });
+  return packed_size(part);
+}
+
+void Bodies::unpack(int ibody, Part part, const double *buf, int size)
+{
+  const char *from = reinterpret_cast<const char *>(buf), *end = from + size * sizeof(double);
+  for_columns(*this, part, [&from, end, ibody](auto &column, int width) {
+    const size_t bytes = std::min(width * sizeof(column[0]), (size_t) (end - from));
+    std::memcpy(static_cast<void *>(&column[(size_t) ibody * width]), from, bytes);
+    from += bytes;
+  });
+}
+
+double Bodies::memory_usage() const
+{
+  size_t bytes = (tops.capacity() + points.capacity()) * sizeof(int);
+  for_columns(*this, ALL, [&bytes](const auto &column, int) {
+    bytes += column.capacity() * sizeof(column[0]);
+  });
+  return (double) bytes;
+}
+
+/* ----------------------------------------------------------------------
+   lists of bodies
+------------------------------------------------------------------------- */
 
 void Bodies::set_number(bigint all)
 {
@@ -154,12 +154,4 @@ void Bodies::put_back_histories()
 {
   for (int ibody = 0; ibody < nmove; ++ibody)
     std::copy_n(history(ibody) + row_size / 2, row_size / 2, history(ibody));
-}
-
-double Bodies::memory_usage() const
-{
-  return rows.capacity() * sizeof(double) + body.capacity() * sizeof(Body) +
-      state.capacity() * sizeof(BodyState) + load.capacity() * sizeof(Load) +
-      last.capacity() * sizeof(Correction) + frame.capacity() * sizeof(BodyFrame) +
-      (tops.capacity() + points.capacity()) * sizeof(int);
 }

@@ -30,7 +30,7 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// The properties of a body, which travel with its owner atom.
+/// The properties of a body, which travel with its owner atom.  Its bytes have no gaps.
 struct Body {
   RigidBody rigid;
   tagint id;        ///< the user's: molecule ID, group number or custom value
@@ -43,6 +43,7 @@ struct Body {
   /// With a box that another fix changes: the periodic image of the owner atom, from which the
   /// center is unwrapped, and with fix deform remap v the image that has the velocity.
   std::array<int, 3> image;
+  int unused = 0;
 
   /// Displacement per radian of the outermost part of the body, a site or a part of a solid.
   double reach() const
@@ -100,8 +101,6 @@ class Bodies {
   /// The history of a body; only for bodies that this rank moves.
   double *history(int ibody) { return rows.data() + (size_t) ibody * row_size; }
   const double *history(int ibody) const { return rows.data() + (size_t) ibody * row_size; }
-  /// Doubles of a history; with trial rows, including the saved copy.
-  int history_size() const { return row_size; }
 
   // Code that moves bodies writes states and corrections, and frames or update_frames().
 
@@ -135,6 +134,7 @@ class Bodies {
   // whole columns, for sums over sites and ranks
 
   const std::vector<BodyState> &states() const { return state; }
+  std::vector<BodyState> &change_states() { return state; }
   std::vector<Load> &change_loads() { return load; }
 
   // for ownership
@@ -145,20 +145,32 @@ class Bodies {
   Body &change_body(int ibody) { return body[ibody]; }
   Load &change_load(int ibody) { return load[ibody]; }
   /// Removes all bodies except owned bodies.
-  void drop_copies();
-  /// Index of another body, owned or a copy of a large one; ghost bodies must not be there yet.
-  int add_owned();
-  int add_copy();
-  int add_ghost();
+  void drop_copies() { resize(nmove = nown), large.clear(); }
+  /// The index of another body, the last one: first owned bodies, then copies of large ones, then
+  /// ghost bodies.
+  int add_owned() { return ++nown, add_copy(); }
+  int add_copy() { return ++nmove, add_ghost(); }
+  int add_ghost() { return resize(nhere() + 1), nhere() - 1; }
   /// Replaces this body by the last owned body.  There must be no copies.
   void remove_owned(int ibody);
   /// Body n becomes body from[n]; a permutation of owned bodies.  There must be no copies.
   void permute(const std::vector<int> &from);
-  void clear();
+  void clear() { nown = 0, drop_copies(); }
   /// Makes the lists and the frames of all bodies.
   void list();
   /// all: bodies on all ranks.
   void set_number(bigint all);
+
+  /// The data of a body: those that a ghost needs; those that move with it to another rank, into a
+  /// restart file, or to the copies of a large body; and all.
+  enum Part { OF_GHOST, MOVING, ALL };
+  /// As doubles.
+  int packed_size(Part part) const;
+  /// Doubles of a moving body with any scheme.
+  int most_packed() const { return packed_size(MOVING) + std::max(0, MAX_SIZE - row_size); }
+  int pack(int ibody, Part part, double *buf) const;
+  /// size: of the data, less if the history, at their end, has another scheme.
+  void unpack(int ibody, Part part, const double *buf, int size);
 
   double memory_usage() const;
 
@@ -176,8 +188,19 @@ class Bodies {
   std::vector<Load> load;
   std::vector<Correction> last;    ///< results of the last corrector
   std::vector<BodyFrame> frame;    ///< of the states
-  std::vector<double> rows;        ///< histories of moved bodies
+  std::vector<double> rows;        ///< histories
 
+  /// Calls act(column, its elements of a body).
+  template <class Self, class Act> static void for_columns(Self &self, Part part, Act act)
+  {
+    act(self.body, 1);
+    act(self.state, 1);
+    if (part == OF_GHOST) return;
+    act(self.last, 1);
+    act(self.load, 1);
+    act(self.rows, self.row_size);
+    if (part == ALL) act(self.frame, 1);
+  }
   void resize(int nhere);
   void list_bodies();
 };
@@ -210,7 +233,6 @@ template <class T> class Column {
     check();
     return values;
   }
-  double memory_usage() const { return values.capacity() * sizeof(T); }
 
  private:
   const Bodies *bodies;

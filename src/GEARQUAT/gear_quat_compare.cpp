@@ -160,7 +160,7 @@ void Comparer::describe(const Sites &sites)
   part_of.assign(bodies.nhere(), -1);
   for (const Site &site : sites) {
     int &part = part_of[site.body];
-    if (part < 0) part = parts.find(ownership.owner_tags()[site.atom]);
+    if (part < 0) part = parts.find(ownership.owner_tag(site.atom));
     describe(sites, site, counts[part]);
   }
 }

@@ -33,35 +33,16 @@ void Minimization::init()
   fitted = false;
 }
 
-/// For nearest_twist() and nearest_move(): sum of arms d, and of their products.
 void Minimization::measure()
 {
-  for (auto &column : moments) {
-    column.begin(bodies.nhere());
-    std::fill(column.all().begin(), column.all().end(), Load());
-  }
+  moments.begin(bodies.nhere());
+  std::fill(moments.all().begin(), moments.all().end(), ArmSums());
   for (const Site &site : sites) {
     const double *d = site.arm_body;
-    Load &first = moments[0][site.body], &second = moments[1][site.body];
-    add3(d, first.force);
-    for (int k = 0; k < 3; ++k) first.torque_space[k] += d[k] * d[k];
-    second.force[0] += d[1] * d[2];
-    second.force[1] += d[0] * d[2];
-    second.force[2] += d[0] * d[1];
+    add3(d, moments[site.body].arm);
+    for (int n = 0; n < 9; ++n) moments[site.body].products[n] += d[n / 3] * d[n % 3];
   }
-  if (!bodies.have_copies()) return;
-  for (auto &column : moments) ownership.sum(column.all());
-}
-
-Arms Minimization::arms_of(int ibody) const
-{
-  const double *sum = moments[0][ibody].force, *square = moments[0][ibody].torque_space;
-  const double *mixed = moments[1][ibody].force;
-  const Arms along_axes = {(double) bodies.body_at(ibody).natoms,
-                           {sum[0], sum[1], sum[2]},
-                           {square[0], mixed[2], mixed[1], mixed[2], square[1], mixed[0], mixed[1],
-                            mixed[0], square[2]}};
-  return along_axes.in_space(bodies.axes(ibody));
+  if (bodies.have_copies()) ownership.sum(moments.all());
 }
 
 void Minimization::check_loads()
@@ -94,30 +75,21 @@ void Minimization::check_loads()
 
 void Minimization::fit()
 {
-  std::vector<Load> sums[2];    // of the way u, of u_x d; of u_y d, of u_z d
-  for (auto &column : sums) column.assign(bodies.nhere(), Load());
+  std::vector<Displacements> sums(bodies.nhere());
   for (const Site &site : sites) {
+    Displacements &sum = sums[site.body];
     double found[3], expected[3], arm[3];
     sites.unwrapped(site, found, expected);
     to_space(bodies.axes(site.body), site.arm_body, arm);
-    double *const products[] = {sums[0][site.body].torque_space, sums[1][site.body].force,
-                                sums[1][site.body].torque_space};
     for (int a = 0; a < 3; ++a) {
       const double way = found[a] - expected[a];
-      sums[0][site.body].force[a] += way;
-      for (int b = 0; b < 3; ++b) products[a][b] += way * arm[b];
+      sum.way[a] += way;
+      for (int b = 0; b < 3; ++b) sum.products[3 * a + b] += way * arm[b];
     }
   }
-  if (bodies.have_copies())
-    for (auto &column : sums) ownership.sum(column);
+  if (bodies.have_copies()) ownership.sum(sums);
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const Load &first = sums[0][ibody], &second = sums[1][ibody];
-    double products[9];
-    std::copy_n(first.torque_space, 3, products);
-    std::copy_n(second.force, 3, products + 3);
-    std::copy_n(second.torque_space, 3, products + 6);
-    const Move move =
-        nearest_move(arms_of(ibody), bodies.body_at(ibody).off, first.force, products);
+    const Move move = nearest_move(arms_of(ibody), bodies.body_at(ibody).off, sums[ibody]);
     BodyState &s = bodies.change_state(ibody);
     double q[4];
     w_times(move.rotation, s.q, q);
@@ -141,24 +113,22 @@ void Minimization::fit_all()
 
 void Minimization::project(double **f)
 {
-  std::vector<Load> twists(bodies.nhere());
+  std::vector<Twist> twists(bodies.nhere());
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     Load load = bodies.load_of(ibody);
     for (int k = 0; k < 3; ++k) {
       load.force[k] /= force->ftm2v;
       load.torque_space[k] /= force->ftm2v;
     }
-    const Twist twist = nearest_twist(arms_of(ibody), bodies.body_at(ibody).off, load);
-    std::copy_n(twist.way, 3, twists[ibody].force);
-    std::copy_n(twist.turn, 3, twists[ibody].torque_space);
+    twists[ibody] = nearest_twist(arms_of(ibody), bodies.body_at(ibody).off, load);
   }
   if (bodies.have_copies()) ownership.spread(twists);
   for (const Site &site : sites) {
-    const Load &of_body = twists[site.body];
+    const Twist &of_body = twists[site.body];
     double arm[3];
     to_space(bodies.axes(site.body), site.arm_body, arm);
-    cross3(of_body.torque_space, arm, f[site.atom]);
-    add3(of_body.force, f[site.atom]);
+    cross3(of_body.turn, arm, f[site.atom]);
+    add3(of_body.way, f[site.atom]);
   }
 }
 

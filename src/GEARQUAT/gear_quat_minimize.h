@@ -27,8 +27,7 @@ namespace LAMMPS_NS::GearQuat {
 class Minimization : protected Pointers {
  public:
   Minimization(LAMMPS *lmp, Bodies &bodies, Ownership &ownership, Sites &sites) :
-      Pointers(lmp), bodies(bodies), ownership(ownership),
-      sites(sites), moments{Column<Load>(bodies), Column<Load>(bodies)}
+      Pointers(lmp), bodies(bodies), ownership(ownership), sites(sites), moments(bodies)
   {
   }
 
@@ -62,9 +61,13 @@ class Minimization : protected Pointers {
   Ownership &ownership;
   Sites &sites;
   bool on = false, fitted = false, warned = false;
-  Column<Load> moments[2];    ///< sums over the sites of all bodies here, along their axes
+  Column<ArmSums> moments;    ///< of all bodies here, along their axes
 
-  Arms arms_of(int ibody) const;
+  Arms arms_of(int ibody) const
+  {
+    const Arms along_axes = {(double) bodies.body_at(ibody).natoms, moments[ibody]};
+    return along_axes.in_space(bodies.axes(ibody));
+  }
   double *stored(int ibody) { return bodies.history(ibody); }
 };
 

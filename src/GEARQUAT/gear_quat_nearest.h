@@ -14,22 +14,34 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Sums over the arms of the sites of a body, from its center of mass, in space.
+/// Sums over the arms d of the sites of a body, from its center of mass.
+struct ArmSums {
+  double arm[3];
+  double products[9];    ///< d_a d_b, row-major, lengths squared
+};
+
+/// Sums over the displacements u of the sites of a body.
+struct Displacements {
+  double way[3];
+  double products[9];    ///< u_a d_b, row-major
+};
+
+/// The arms of n sites, in space.
 struct Arms {
   double number;    ///< of sites
-  double sum[3];
-  double products[9];    ///< sum of d_a d_b, row-major, lengths squared
+  ArmSums sums;
 
   /// The sums in space for a body with these axes (space -> body), from sums along its axes.
   Arms in_space(const double *axes) const
   {
-    Arms out = {number, {}, {}};
-    to_space(axes, sum, out.sum);
+    Arms out = {number, {}};
+    to_space(axes, sums.arm, out.sums.arm);
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j)
-            out.products[3 * a + b] += axes[3 * i + a] * products[3 * i + j] * axes[3 * j + b];
+            out.sums.products[3 * a + b] +=
+                axes[3 * i + a] * sums.products[3 * i + j] * axes[3 * j + b];
     return out;
   }
 };
@@ -89,7 +101,7 @@ inline void solve_free(const double m[6][6], const double b[6], const double sca
 /// torque.  idle: if not null, receives the rotations that move no site; they are zero.
 inline Twist nearest_twist(const Arms &arms, Mask off, const Load &sums, Mask *idle = nullptr)
 {
-  const double *p = arms.products, *s = arms.sum, trace = p[0] + p[4] + p[8];
+  const double *p = arms.sums.products, *s = arms.sums.arm, trace = p[0] + p[4] + p[8];
   const double cross[3][3] = {{0.0, -s[2], s[1]}, {s[2], 0.0, -s[0]}, {-s[1], s[0], 0.0}};
   double m[6][6] = {}, b[6], scale[6], x[6];
   bool held[6], free[6];
@@ -126,17 +138,16 @@ inline void quaternion_of_turn(const double *turn, double *q)
   q[3] = std::cos(0.5 * angle);
 }
 
-/// The move nearest to the displacements u_i of the sites.  sum: of u_i; products: of (u_i)_a
-/// (d_i)_b, row-major.  Uses the Gauss-Newton method from the present pose, which is near the
+/// The move nearest to the displacements u_i of the sites.  Uses the Gauss-Newton method from the present pose, which is near the
 /// solution.
-inline Move nearest_move(const Arms &arms, Mask off, const double *sum, const double *products)
+inline Move nearest_move(const Arms &arms, Mask off, const Displacements &sums)
 {
   constexpr int ROUNDS = 50;
   Move move = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}};
-  const double *p = arms.products, reach2 = (p[0] + p[4] + p[8]) / arms.number;
+  const double *p = arms.sums.products, reach2 = (p[0] + p[4] + p[8]) / arms.number;
   double last = HUGE_VAL;
   double there[9];    // sum of (d_i + u_i)_a (d_i)_b
-  for (int n = 0; n < 9; ++n) there[n] = arms.products[n] + products[n];
+  for (int n = 0; n < 9; ++n) there[n] = p[n] + sums.products[n];
   for (int round = 0; round < ROUNDS; ++round) {
     double a[9];
     rotation_matrix(move.rotation, dot4(move.rotation, move.rotation), a);    // its transpose turns
@@ -146,9 +157,10 @@ inline Move nearest_move(const Arms &arms, Mask off, const double *sum, const do
       for (int i = 0; i < 3; ++i) k[n] += a[3 * i + n / 3] * there[3 * (n % 3) + i];
     Load rest = {{}, {k[5] - k[7], k[6] - k[2], k[1] - k[3]}};
     double shift[3];
-    cross3(turned.sum, move.way, shift);
+    cross3(turned.sums.arm, move.way, shift);
     for (int n = 0; n < 3; ++n) {
-      rest.force[n] = sum[n] + arms.sum[n] - turned.sum[n] - arms.number * move.way[n];
+      rest.force[n] =
+          sums.way[n] + arms.sums.arm[n] - turned.sums.arm[n] - arms.number * move.way[n];
       rest.torque_space[n] -= shift[n];
     }
     const Twist twist = nearest_twist(turned, off, rest);

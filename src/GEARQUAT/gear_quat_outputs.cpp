@@ -41,39 +41,25 @@ double Sums::energy_correction() const
   return std::fabs(all[0]) < rounding ? 0.0 : all[0] / force->ftm2v;
 }
 
-/// The contribution of a body to a sum, or its candidate for a maximum, in the global vector.
-double Sums::of_body(int n, int ibody, const Integrator *integrator) const
-{
-  const RigidBody &rigid = bodies.rigid_of(ibody);
-  const BodyState &s = bodies.state_of(ibody);
-  const Correction &last = bodies.last_of(ibody);
-  switch (n) {
-    case KE_TRANSLATION:
-      return translational_energy(rigid, s.velocity);
-    case KE_ROTATION:
-      return rotational_energy(rigid, s.omega_body);
-    case NORM:
-      return std::fabs(dot4(s.q, s.q) - 1.0);
-    case RADIAL:
-      return integrator ? std::fabs(integrator->radial_rate(bodies.history(ibody))) : 0.0;
-    case MAX_POSITION:
-      return last.position_error();
-    case RMS_POSITION:
-      return last.position_error() * last.position_error();
-    case MAX_ANGLE:
-      return last.angle_error();
-    default:
-      return last.angle_error() * last.angle_error();
-  }
-}
-
 double Sums::element(int n, const Integrator *integrator) const
 {
   const bool largest = n == NORM || n == RADIAL || n == MAX_POSITION || n == MAX_ANGLE;
   double here = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const double one = of_body(n, ibody, integrator);
-    here = largest ? std::max(here, one) : here + one;
+    const RigidBody &rigid = bodies.rigid_of(ibody);
+    const BodyState &s = bodies.state_of(ibody);
+    const Correction &last = bodies.last_of(ibody);
+    const double off = last.position_error(), turn = last.angle_error();
+    const double rate = integrator ? integrator->radial_rate(bodies.history(ibody)) : 0.0;
+    const double of_body[ELEMENTS] = {translational_energy(rigid, s.velocity),
+                                      rotational_energy(rigid, s.omega_body),
+                                      std::fabs(dot4(s.q, s.q) - 1.0),
+                                      std::fabs(rate),
+                                      off,
+                                      off * off,
+                                      turn,
+                                      turn * turn};
+    here = largest ? std::max(here, of_body[n]) : here + of_body[n];
   }
   const double all = over_ranks(largest ? MPI_MAX : MPI_SUM, here, world);
   if (n == KE_TRANSLATION || n == KE_ROTATION) return all * force->mvv2e;

@@ -46,8 +46,6 @@ class Sums : protected Pointers {
 
  private:
   const Bodies &bodies;
-
-  double of_body(int n, int ibody, const Integrator *integrator) const;
 };
 
 /// A row of numbers of every body, for the fix's global array (all bodies on all ranks, sorted by

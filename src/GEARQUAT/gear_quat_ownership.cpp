@@ -3,11 +3,10 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Bodies travel as streams of doubles: between ranks, to ghosts and back, and in restart files.  Some
-   sites of large bodies cannot find their owner atom.  Before a run, and when the number of large
-   bodies changes, their owners send them to all ranks, with their histories.  From then on every
-   rank predicts and corrects large bodies, from the same loads and thus to the same bits, and keeps
-   them while atoms are exchanged.  The only message in a step is the sum of the loads. */
+/* Bodies travel as streams of doubles: between ranks, to ghosts, and in restart files.  Some sites of
+   large bodies cannot find their owner atom.  After an exchange of atoms their owners send them to
+   all ranks, with their histories.  From then on every rank predicts and corrects large bodies, from
+   the same loads and thus to the same bits.  The only message in a step is the sum of the loads. */
 
 #include "gear_quat_ownership.h"
 
@@ -49,7 +48,14 @@ double Ownership::mass_of(int i) const
 /// On a single rank ghosts are images of its atoms; on several ranks ghosts receive the IDs.
 tagint Ownership::id_of(int i) const
 {
-  return body_id[i < atom->nlocal ? i : atom->map(atom->tag[i])];
+  return assigned[i < atom->nlocal ? i : atom->map(atom->tag[i])].id;
+}
+
+std::vector<tagint> Ownership::owner_tags() const
+{
+  std::vector<tagint> tags;
+  for (int i = 0; i < atom->nlocal; ++i) tags.push_back(assigned[i].owner);
+  return tags;
 }
 
 /* ----------------------------------------------------------------------
@@ -58,13 +64,12 @@ tagint Ownership::id_of(int i) const
 
 void Ownership::clear(bool with_extended)
 {
-  packed_large.clear();
   large_owners.clear();
   bodies.clear();
   owner_atom.clear();
   index.clear();
-  records.reset(with_extended, (int) owned.size());
-  for (size_t i = 0; i < owned.size(); ++i) set_arrays(i);
+  records.reset(with_extended, (int) assigned.size());
+  for (size_t i = 0; i < assigned.size(); ++i) set_arrays(i);
 }
 
 void Ownership::create(const std::vector<tagint> &ids, const GivenBodies &given)
@@ -102,14 +107,13 @@ void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
     if (ids[i] != 0) atoms.push_back(i);
   records.refuse(atoms);
   const bool any_extended = records.any(atoms);
-  if (any_extended && !records.has_records()) records.reset(true, (int) owned.size());
+  if (any_extended && !records.has_records()) records.reset(true, (int) assigned.size());
 
   const Assembly assembly(lmp, given, any_extended ? &records : nullptr, ids, former);
-  note_scratch(assembly.memory_usage() + ids.capacity() * sizeof(tagint));
   assembly.for_sites([&](const Assembly::Made &one, int i, const double *arm_body) {
-    body_id[i] = one.body.id;
-    owner_tag[i] = one.owner;
-    std::copy_n(arm_body, 3, arm[i].begin());
+    assigned[i].id = one.body.id;
+    assigned[i].owner = one.owner;
+    std::copy_n(arm_body, 3, assigned[i].arm);
     free_atoms = free_atoms || one.moves_apart(atom->v[i], arm_body);
     if (any_extended) records.attach(i, mass_of(i), one.state.q);
   });
@@ -126,10 +130,14 @@ void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
 
 void Ownership::recreate()
 {
-  const std::vector<tagint> ids(body_id.begin(), body_id.begin() + atom->nlocal);
-  Former former = {arm, std::vector<std::array<double, 9>>(atom->nlocal)};
-  for (int i = 0; i < atom->nlocal; ++i)
+  std::vector<tagint> ids(atom->nlocal);
+  Former former = {std::vector<std::array<double, 3>>(atom->nlocal),
+                   std::vector<std::array<double, 9>>(atom->nlocal)};
+  for (int i = 0; i < atom->nlocal; ++i) {
+    ids[i] = assigned[i].id;
+    std::copy_n(assigned[i].arm, 3, former.arm[i].begin());
     if (index[i] >= 0) std::copy_n(bodies.axes(index[i]), 9, former.axes[i].begin());
+  }
   clear();
   add(ids, GivenBodies(), false, &former);
   choose_large();
@@ -138,22 +146,23 @@ void Ownership::recreate()
 Ownership::Resumed Ownership::resume(const std::vector<const double *> &packed, bool with_extended,
                                      int group)
 {
-  const std::vector<tagint> ids(body_id.begin(),
-                                body_id.begin() + atom->nlocal);    // numbered by the command
+  std::vector<tagint> ids;    // numbered by the command
+  for (int i = 0; i < atom->nlocal; ++i) ids.push_back(assigned[i].id);
   const bigint expected = bodies.number();
   clear(with_extended);
   int here[2] = {0, 0};    // atoms in a body only here, only in the file
   for (int i = 0; i < atom->nlocal; ++i) {
     if (packed[i]) unpack_exchange(i, packed[i]);
     if (group && !(atom->mask[i] & group)) continue;
-    if (body_id[i] == 0 && ids[i] != 0) here[0] = 1;
-    if (body_id[i] != 0 && ids[i] == 0) here[1] = 1;
-    body_id[i] = ids[i];
-    if (owned[i] >= 0) bodies.change_body(owned[i]).id = ids[i];
+    Assigned &one = assigned[i];
+    if (one.id == 0 && ids[i] != 0) here[0] = 1;
+    if (one.id != 0 && ids[i] == 0) here[1] = 1;
+    one.id = ids[i];
+    if (one.owned >= 0) bodies.change_body(one.owned).id = ids[i];
   }
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (body_id[i] != 0) continue;    // omitted, or in no body
-    if (owned[i] >= 0) remove_owned(owned[i]);
+    if (in_body(i)) continue;    // the others are omitted, or in no body
+    if (assigned[i].owned >= 0) remove_owned(assigned[i].owned);
     set_arrays(i);
   }
   count();
@@ -195,16 +204,15 @@ void Ownership::follow_atom_ids()
 {
   std::vector<tagint> changed;    // before and now
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const int owner = owner_atom[ibody];
-    if (owner_tag[owner] != atom->tag[owner])
-      changed.insert(changed.end(), {owner_tag[owner], atom->tag[owner]});
+    const tagint before = assigned[owner_atom[ibody]].owner, now = atom->tag[owner_atom[ibody]];
+    if (before != now) changed.insert(changed.end(), {before, now});
   }
   const std::vector<tagint> all = gather(changed, world);
   std::unordered_map<tagint, tagint> now;
   for (size_t n = 0; n < all.size(); n += 2) now[all[n]] = all[n + 1];
   for (int i = 0; i < atom->nlocal && !now.empty(); ++i) {
-    const auto found = now.find(owner_tag[i]);
-    if (in_body(i) && found != now.end()) owner_tag[i] = found->second;
+    const auto found = now.find(assigned[i].owner);
+    if (in_body(i) && found != now.end()) assigned[i].owner = found->second;
   }
 }
 
@@ -214,7 +222,6 @@ void Ownership::follow_atom_ids()
 
 void Ownership::drop_copies()
 {
-  if (!bodies.large.empty()) pack_large();
   bodies.drop_copies();
   large_owners.clear();
 }
@@ -224,21 +231,17 @@ int Ownership::add_owned(int atom)
   drop_copies();
   const int ibody = bodies.add_owned();
   owner_atom.push_back(atom);
-  owned[atom] = ibody;
-  return ibody;
+  return assigned[atom].owned = ibody;
 }
 
 void Ownership::remove_owned(int ibody)
 {
   drop_copies();
-  owned[owner_atom[ibody]] = -1;
   bodies.remove_owned(ibody);
-  const int end = bodies.nowned();
-  if (ibody != end) {
-    owner_atom[ibody] = owner_atom[end];
-    owned[owner_atom[ibody]] = ibody;
-  }
-  owner_atom.resize(end);
+  assigned[owner_atom.back()].owned = ibody;
+  assigned[owner_atom[ibody]].owned = -1;
+  owner_atom[ibody] = owner_atom.back();
+  owner_atom.pop_back();
 }
 
 void Ownership::update()
@@ -246,13 +249,13 @@ void Ownership::update()
   do {
     drop_copies();
     order_bodies();
-    share_large();
     if (comm->nprocs > 1) {
-      std::fill(owned.begin() + atom->nlocal, owned.end(), -1);
-      std::fill(shared.begin(), shared.end(), -1);
-      if (nlarge < bodies.number()) {
+      share_large();
+      for (Assigned &one : assigned) one.shared = -1;
+      for (size_t i = atom->nlocal; i < assigned.size(); ++i) assigned[i].owned = -1;
+      if (number_of_large() < bodies.number()) {
         share_owners();
-        tell_ghosts();
+        send(nullptr, 0, true);
       }
     }
     bodies.list();
@@ -276,7 +279,7 @@ void Ownership::order_bodies()
   });
   bodies.permute(from);
   std::sort(owner_atom.begin(), owner_atom.end());
-  for (int ibody = 0; ibody < n; ++ibody) owned[owner_atom[ibody]] = ibody;
+  for (int ibody = 0; ibody < n; ++ibody) assigned[owner_atom[ibody]].owned = ibody;
 }
 
 /// Owner atoms of bodies that are not large receive a request if sites on other ranks need them.
@@ -284,24 +287,14 @@ void Ownership::share_owners()
 {
   std::vector<double> sought(atom->nlocal + atom->nghost, 0.0);
   for (int i = 0; i < atom->nlocal; ++i) {
-    const int owner = in_body(i) ? atom->map(owner_tag[i]) : -1;
+    const int owner = in_body(i) ? atom->map(assigned[i].owner) : -1;
     if (owner >= atom->nlocal) sought[owner] = 1.0;
   }
-  labels = sought.data();
-  compare_calls(world);
-  comm->reverse_comm(fix, 1);
-  labels = nullptr;
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (sought[i] > 0.0 && owned[i] >= 0 && !bodies.is_large(owned[i])) shared[i] = owned[i];
-}
-
-/// Sends the IDs of bodies to ghost atoms, and the bodies themselves to ghosts of shared owner
-/// atoms.
-void Ownership::tell_ghosts()
-{
-  message = Message::GHOSTS;
-  compare_calls(world);
-  comm->forward_comm(fix);
+  add_from_ghosts(sought.data(), 1, true);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    Assigned &one = assigned[i];
+    if (sought[i] > 0.0 && one.owned >= 0 && !bodies.is_large(one.owned)) one.shared = one.owned;
+  }
 }
 
 /// Finds the bodies of all owned atoms.
@@ -312,7 +305,7 @@ void Ownership::find_bodies()
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!in_body(i)) continue;
     index[i] = find_body(i);
-    if (index[i] < 0) unseen.push_back(owner_tag[i]);
+    if (index[i] < 0) unseen.push_back(assigned[i].owner);
   }
 }
 
@@ -320,11 +313,8 @@ void Ownership::find_bodies()
 bool Ownership::take_stock()
 {
   const bigint lost = (bigint) unseen.size();
-  bigint here[7] = {bodies.nowned(), 0, 0, lost, outside_atoms, 0, 0};
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    here[1] += bodies.body_at(ibody).natoms;
-    here[6] += bodies.is_large(ibody);
-  }
+  bigint here[6] = {bodies.nowned(), 0, 0, lost, outside_atoms, 0};
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here[1] += bodies.body_at(ibody).natoms;
   for (int i = 0; i < atom->nlocal; ++i) {
     here[2] += in_body(i);
     here[5] += index[i] >= bodies.nmoved();
@@ -333,10 +323,8 @@ bool Ownership::take_stock()
   bodies.set_number(all[0]);
   natoms = all[1];
   any_ghosts = all[5] > 0;
-  nlarge = all[6];
-  bodies.set_copies(any_ghosts || nlarge > 0);
+  bodies.set_copies(any_ghosts || number_of_large() > 0);
   if (all[1] != all[2] || all[3] > 0) check_whole();
-  if (nlarge != (bigint) bodies.large.size()) return false;    // one was removed
   if (all[3] > 0) {
     promote();
     return false;
@@ -372,15 +360,6 @@ bool Ownership::change_masks(const std::map<tagint, Mask> &masks)
   return over_ranks(MPI_MAX, changed, world) != 0;
 }
 
-void Ownership::spread_labels(std::vector<double> &label)
-{
-  labels = label.data();
-  message = Message::LABELS;
-  compare_calls(world);
-  comm->forward_comm(fix, 1);
-  labels = nullptr;
-}
-
 /* ----------------------------------------------------------------------
    a step
 ------------------------------------------------------------------------- */
@@ -394,27 +373,20 @@ void Ownership::spread_states()
 void Ownership::spread_moved()
 {
   if (!any_ghosts) return;
-  message = Message::STATES;
-  compare_calls(world);
-  comm->forward_comm(fix, STATE_SIZE);
+  spread(bodies.change_states());
   bodies.update_frames(bodies.ghost_tops);
 }
 
-void Ownership::sum(std::vector<Load> &column)
+void Ownership::sum(double *values, int size)
 {
-  loads = column.data();
-  compare_calls(world);
-  if (any_ghosts) comm->reverse_comm(fix, LOAD_SIZE);
-  if (!bodies.large.empty()) sum_large(column);
-}
-
-void Ownership::spread(std::vector<Load> &column)
-{
-  if (!any_ghosts) return;
-  loads = column.data();
-  message = Message::LOADS;
-  compare_calls(world);
-  comm->forward_comm(fix, LOAD_SIZE);
+  if (any_ghosts) add_from_ghosts(values, size, false);
+  if (bodies.large.empty()) return;
+  std::vector<double> part(bodies.large.size() * size), all(part.size());
+  for (size_t n = 0; n < bodies.large.size(); ++n)
+    std::copy_n(values + bodies.large[n] * size, size, &part[n * size]);
+  reduce(MPI_SUM, part.data(), all.data(), part.size(), world);
+  for (size_t n = 0; n < bodies.large.size(); ++n)
+    std::copy_n(&all[n * size], size, values + bodies.large[n] * size);
 }
 
 /* ----------------------------------------------------------------------
@@ -423,50 +395,29 @@ void Ownership::spread(std::vector<Load> &column)
 
 void Ownership::grow_arrays(int n)
 {
-  body_id.resize(n);
-  owner_tag.resize(n);
-  owned.resize(n, -1);
-  shared.resize(n, -1);
-  arm.resize(n);
+  assigned.resize(n);
   records.grow(n);
 }
 
 void Ownership::set_arrays(int i)
 {
-  body_id[i] = owner_tag[i] = 0;
-  owned[i] = shared[i] = -1;
-  arm[i] = {};
+  assigned[i] = Assigned();
   records.set(i);
 }
 
 void Ownership::copy_arrays(int from, int to, int delflag)
 {
-  if (delflag && owned[to] >= 0) remove_owned(owned[to]);
-  body_id[to] = body_id[from];
-  owner_tag[to] = owner_tag[from];
-  owned[to] = owned[from];
-  arm[to] = arm[from];
+  if (delflag && assigned[to].owned >= 0) remove_owned(assigned[to].owned);
+  assigned[to] = assigned[from];
   records.copy(from, to);
-  if (owned[to] >= 0) owner_atom[owned[to]] = to;
-}
-
-double Ownership::present_memory() const
-{
-  const double per_atom = 2 * sizeof(tagint) + 2 * sizeof(int) + 3 * sizeof(double);
-  return bodies.memory_usage() + owned.capacity() * per_atom +
-      (packed_large.capacity() + parts.capacity() + sums.capacity()) * sizeof(double) +
-      large_owners.capacity() * sizeof(tagint) +
-      (owner_atom.capacity() + index.capacity()) * sizeof(int) + records.memory_usage();
-}
-
-void Ownership::note_scratch(double bytes)
-{
-  peak = std::max(peak, present_memory() + bytes);
+  if (assigned[to].owned >= 0) owner_atom[assigned[to].owned] = to;
 }
 
 double Ownership::memory_usage() const
 {
-  return std::max(peak, present_memory());
+  return bodies.memory_usage() + assigned.capacity() * sizeof(Assigned) +
+      large_owners.capacity() * sizeof(tagint) +
+      (owner_atom.capacity() + index.capacity()) * sizeof(int) + records.memory_usage();
 }
 
 /* ----------------------------------------------------------------------
@@ -475,193 +426,115 @@ double Ownership::memory_usage() const
 
 int Ownership::pack_exchange(int i, double *buf) const
 {
+  const Assigned &one = assigned[i];
   int m = 0;
-  buf[m++] = ubuf(body_id[i]).d;
-  if (body_id[i] == 0) return m;
-  buf[m++] = ubuf(owner_tag[i]).d;
-  for (int k = 0; k < 3; ++k) buf[m++] = arm[i][k];
+  buf[m++] = ubuf(one.id).d;
+  if (one.id == 0) return m;
+  buf[m++] = ubuf(one.owner).d;
+  for (int k = 0; k < 3; ++k) buf[m++] = one.arm[k];
   m += records.pack(i, buf + m);
-  const int ibody = owned[i];
-  buf[m++] = ubuf(ibody < 0 ? 0 : bodies.history_size()).d;
-  if (ibody < 0) return m;
-  return m + pack_moved(ibody, buf + m);
+  const int size = one.owned < 0 ? 0 : bodies.packed_size(Bodies::MOVING);
+  buf[m++] = ubuf(size).d;
+  return size == 0 ? m : m + bodies.pack(one.owned, Bodies::MOVING, buf + m);
 }
 
 /// In a restart file a history may have another scheme.
 int Ownership::unpack_exchange(int i, const double *buf)
 {
+  Assigned &one = assigned[i];
   int m = 0;
   set_arrays(i);
-  body_id[i] = (tagint) ubuf(buf[m++]).i;
-  if (body_id[i] == 0) return m;
-  owner_tag[i] = (tagint) ubuf(buf[m++]).i;
-  for (int k = 0; k < 3; ++k) arm[i][k] = buf[m++];
+  one.id = (tagint) ubuf(buf[m++]).i;
+  if (one.id == 0) return m;
+  one.owner = (tagint) ubuf(buf[m++]).i;
+  for (int k = 0; k < 3; ++k) one.arm[k] = buf[m++];
   m += records.unpack(i, buf + m);
   const int size = (int) ubuf(buf[m++]).i;
-  if (size == 0) return m;
-  return m + unpack_moved(add_owned(i), buf + m, size);
-}
-
-int Ownership::pack_moved(int ibody, double *buf) const
-{
-  int m = pack_body(ibody, buf);
-  std::memcpy(buf + m, &bodies.last_of(ibody), sizeof(Correction));
-  m += LAST_SIZE;
-  std::memcpy(buf + m, &bodies.load_of(ibody), sizeof(Load));
-  m += LOAD_SIZE;
-  std::copy_n(bodies.history(ibody), bodies.history_size(), buf + m);
-  return m + bodies.history_size();
-}
-
-/// size: of the history, which is skipped if it has another scheme.
-int Ownership::unpack_moved(int ibody, const double *buf, int size)
-{
-  int m = unpack_body(buf, ibody);
-  std::memcpy(&bodies.change_last(ibody), buf + m, sizeof(Correction));
-  m += LAST_SIZE;
-  std::memcpy(&bodies.change_load(ibody), buf + m, sizeof(Load));
-  m += LOAD_SIZE;
-  if (size == bodies.history_size()) std::copy_n(buf + m, size, bodies.history(ibody));
+  if (size > 0) bodies.unpack(add_owned(i), Bodies::MOVING, buf + m, size);
   return m + size;
-}
-
-int Ownership::pack_body(int ibody, double *buf) const
-{
-  const Body &body = bodies.body_at(ibody);
-  int m = 0;
-  buf[m++] = ubuf(body.id).d;
-  buf[m++] = ubuf(body.natoms).d;
-  buf[m++] = ubuf(body.from_file).d;
-  buf[m++] = ubuf(body.fresh).d;
-  buf[m++] = ubuf(body.large).d;
-  buf[m++] = ubuf(body.off).d;
-  buf[m++] = body.extent;
-  buf[m++] = body.rigid.mass;
-  for (double moment : body.rigid.inertia) buf[m++] = moment;
-  for (int periods : body.image) buf[m++] = periods;
-  std::memcpy(buf + m, &bodies.state_of(ibody), sizeof(BodyState));
-  return BODY_SIZE;
-}
-
-int Ownership::unpack_body(const double *buf, int ibody)
-{
-  Body &body = bodies.change_body(ibody);
-  int m = 0;
-  body.id = (tagint) ubuf(buf[m++]).i;
-  body.natoms = (tagint) ubuf(buf[m++]).i;
-  body.from_file = (int) ubuf(buf[m++]).i;
-  body.fresh = (int) ubuf(buf[m++]).i;
-  body.large = (int) ubuf(buf[m++]).i;
-  body.off = (Mask) ubuf(buf[m++]).i;
-  body.extent = buf[m++];
-  body.rigid.mass = buf[m++];
-  for (double &moment : body.rigid.inertia) moment = buf[m++];
-  for (int &periods : body.image) periods = (int) buf[m++];
-  std::memcpy(&bodies.change_state(ibody), buf + m, sizeof(BodyState));
-  return BODY_SIZE;
 }
 
 int Ownership::packed_size(int i) const
 {
-  if (body_id[i] == 0) return 1;
-  const int site = ATOM_SIZE + records.packed_size(i);
-  return owned[i] < 0 ? site : site + moved_size();
-}
-
-int Ownership::max_exchange() const
-{
-  return ATOM_SIZE + Extended::RECORD_SIZE + moved_size() - bodies.history_size() +
-      std::max(bodies.history_size(), MAX_SIZE);
-}
-
-int Ownership::max_forward() const
-{
-  return 2 + BODY_SIZE;
+  if (!in_body(i)) return 1;
+  const int body = assigned[i].owned < 0 ? 0 : bodies.packed_size(Bodies::MOVING);
+  return ATOM_SIZE + records.packed_size(i) + body;
 }
 
 /* ----------------------------------------------------------------------
-   ghost bodies: from owner atoms to their ghosts and back
+   messages from atoms to their ghosts and back: the data of atoms, or of the bodies that they own
 ------------------------------------------------------------------------- */
+
+/// Without values: the IDs of bodies, and the bodies themselves to ghosts of shared owner atoms.
+void Ownership::send(double *values, int size, bool from_atoms)
+{
+  numbers = values, width = size, of_atoms = from_atoms;
+  compare_calls(world);
+  comm->forward_comm(fix, size);
+}
+
+/// Adds the values of ghosts to the values of their owners.
+void Ownership::add_from_ghosts(double *values, int size, bool from_atoms)
+{
+  numbers = values, width = size, of_atoms = from_atoms;
+  compare_calls(world);
+  comm->reverse_comm(fix, size);
+}
+
+/// The numbers of an atom or of the body that it owns, null if it shares none.
+double *Ownership::numbers_of(int i) const
+{
+  const int n = of_atoms ? i : assigned[i].shared;
+  return n < 0 ? nullptr : numbers + (size_t) n * width;
+}
 
 int Ownership::pack_forward(int n, const int *list, double *buf)
 {
-  int m = 0;
-  if (message == Message::LABELS) {
-    for (int i = 0; i < n; ++i) buf[m++] = labels[list[i]];
-    return m;
-  }
+  double *to = buf;
   for (int i = 0; i < n; ++i) {
-    const int ibody = shared[list[i]];
-    if (message == Message::GHOSTS) {
-      buf[m++] = ubuf(body_id[list[i]]).d;
-      buf[m++] = ubuf(ibody < 0 ? 0 : 1).d;
-      if (ibody >= 0) m += pack_body(ibody, buf + m);
-    } else if (ibody < 0) {
+    if (numbers) {
+      if (const double *mine = numbers_of(list[i])) to = std::copy_n(mine, width, to);
       continue;
-    } else if (message == Message::STATES) {
-      std::memcpy(buf + m, &bodies.state_of(ibody), sizeof(BodyState));
-      m += STATE_SIZE;
-    } else {
-      std::memcpy(buf + m, &loads[ibody], sizeof(Load));
-      m += LOAD_SIZE;
     }
+    const Assigned &one = assigned[list[i]];
+    *to++ = ubuf(one.id).d;
+    *to++ = one.shared;
+    if (one.shared >= 0) to += bodies.pack(one.shared, Bodies::OF_GHOST, to);
   }
-  return m;
+  return (int) (to - buf);
 }
 
 void Ownership::unpack_forward(int n, int first, const double *buf)
 {
-  int m = 0;
-  if (message == Message::LABELS) {
-    std::copy_n(buf, n, labels + first);
-    return;
-  }
+  const int size = bodies.packed_size(Bodies::OF_GHOST);
   for (int i = first; i < first + n; ++i) {
-    if (message == Message::GHOSTS) {
-      body_id[i] = (tagint) ubuf(buf[m++]).i;
-      if (ubuf(buf[m++]).i == 0) continue;
-      owned[i] = shared[i] = bodies.add_ghost();
-      m += unpack_body(buf + m, owned[i]);
-    } else if (shared[i] >= 0 && message == Message::STATES) {
-      std::memcpy(&bodies.change_state(shared[i]), buf + m, sizeof(BodyState));
-      m += STATE_SIZE;
-    } else if (shared[i] >= 0) {
-      std::memcpy(&loads[shared[i]], buf + m, sizeof(Load));
-      m += LOAD_SIZE;
+    if (numbers) {
+      double *mine = numbers_of(i);
+      if (mine) std::copy_n(buf, width, mine), buf += width;
+      continue;
     }
+    Assigned &one = assigned[i];
+    one.id = (tagint) ubuf(*buf++).i;
+    if (*buf++ < 0.0) continue;
+    one.owned = one.shared = bodies.add_ghost();
+    bodies.unpack(one.shared, Bodies::OF_GHOST, buf, size);
+    buf += size;
   }
 }
 
-/// Labels of atoms, if there are any, otherwise loads.
 int Ownership::pack_reverse(int n, int first, double *buf)
 {
-  if (labels) {
-    std::copy_n(labels + first, n, buf);
-    return n;
-  }
-  int m = 0;
-  for (int i = first; i < first + n; ++i) {
-    if (shared[i] < 0) continue;
-    std::memcpy(buf + m, &loads[shared[i]], sizeof(Load));
-    m += LOAD_SIZE;
-  }
-  return m;
+  double *to = buf;
+  for (int i = first; i < first + n; ++i)
+    if (const double *mine = numbers_of(i)) to = std::copy_n(mine, width, to);
+  return (int) (to - buf);
 }
 
-/// Adds labels or loads of ghosts to the values of their owners.
 void Ownership::unpack_reverse(int n, const int *list, const double *buf)
 {
-  if (labels) {
-    for (int i = 0; i < n; ++i) labels[list[i]] += buf[i];
-    return;
-  }
-  int m = 0;
-  for (int i = 0; i < n; ++i) {
-    const int ibody = shared[list[i]];
-    if (ibody < 0) continue;
-    for (int k = 0; k < 3; ++k) loads[ibody].force[k] += buf[m++];
-    for (int k = 0; k < 3; ++k) loads[ibody].torque_space[k] += buf[m++];
-  }
+  for (int i = 0; i < n; ++i)
+    if (double *mine = numbers_of(list[i]))
+      for (int k = 0; k < width; ++k) mine[k] += *buf++;
 }
 
 /* ----------------------------------------------------------------------
@@ -678,20 +551,11 @@ static double ghost_cutoff(const Comm *comm, const Domain *domain)
 void Ownership::choose_large()
 {
   drop_copies();
-  packed_large.clear();
   const double cutoff = ghost_cutoff(comm, domain);
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     Body &one = bodies.change_body(ibody);
     one.large = comm->nprocs > 1 && (one.large || one.extent > cutoff);
   }
-  count_large();
-}
-
-void Ownership::count_large()
-{
-  bigint here = 0;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here += bodies.body_at(ibody).large;
-  nlarge = over_ranks(MPI_SUM, here, world);
 }
 
 /// A site cannot find its owner atom, although it exists: its body becomes large.
@@ -703,48 +567,29 @@ void Ownership::promote()
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     if (std::binary_search(all.begin(), all.end(), atom->tag[owner_atom[ibody]]))
       bodies.change_body(ibody).large = 1;
-  count_large();
 }
 
-/// Before atoms are exchanged, since the owner may be on another rank afterwards.
-void Ownership::pack_large()
+/// Adds large bodies of other ranks after the owned bodies.  Collective.
+void Ownership::share_large()
 {
-  packed_large.resize(bodies.large.size() * large_size());
-  double *buf = packed_large.data();
-  for (size_t n = 0; n < bodies.large.size(); ++n) {
-    buf[0] = ubuf(large_owners[n]).d;
-    pack_moved(bodies.large[n], buf + 1);
-    buf += large_size();
-  }
-}
-
-/// Gathers large bodies from their owners on all ranks.  Collective.
-void Ownership::gather_large()
-{
+  const int size = 1 + bodies.packed_size(Bodies::MOVING);
   std::vector<double> mine;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     if (!bodies.body_at(ibody).large) continue;
-    mine.resize(mine.size() + large_size());
-    double *buf = &mine[mine.size() - large_size()];
+    mine.resize(mine.size() + size);
+    double *buf = &mine[mine.size() - size];
     buf[0] = ubuf(atom->tag[owner_atom[ibody]]).d;
-    pack_moved(ibody, buf + 1);
+    bodies.pack(ibody, Bodies::MOVING, buf + 1);
   }
-  packed_large = gather(mine, world);
-}
-
-/// Adds large bodies of other ranks after the owned bodies.
-void Ownership::share_large()
-{
-  const int size = large_size();
-  if ((bigint) packed_large.size() != nlarge * size) gather_large();
+  const std::vector<double> all = gather(mine, world);
   std::map<tagint, int> found;    // by the atom IDs of their owners
-  for (size_t m = 0; m < packed_large.size(); m += size) {
-    const tagint tag = (tagint) ubuf(packed_large[m]).i;
+  for (size_t m = 0; m < all.size(); m += size) {
+    const tagint tag = (tagint) ubuf(all[m]).i;
     const int owner = atom->map(tag);
-    int ibody = owner >= 0 && owner < atom->nlocal ? owned[owner] : -1;
+    int ibody = owner >= 0 && owner < atom->nlocal ? assigned[owner].owned : -1;
     if (ibody < 0) {
       ibody = bodies.add_copy();
-      unpack_moved(ibody, &packed_large[m + 1], bodies.history_size());
+      bodies.unpack(ibody, Bodies::MOVING, &all[m + 1], size - 1);
     }
     found[tag] = ibody;
   }
@@ -757,27 +602,10 @@ void Ownership::share_large()
 /// The body of an owned atom, -1 if this rank cannot find it.
 int Ownership::find_body(int i) const
 {
-  const auto found = std::lower_bound(large_owners.begin(), large_owners.end(), owner_tag[i]);
-  if (found != large_owners.end() && *found == owner_tag[i])
+  const tagint tag = assigned[i].owner;
+  const auto found = std::lower_bound(large_owners.begin(), large_owners.end(), tag);
+  if (found != large_owners.end() && *found == tag)
     return bodies.large[found - large_owners.begin()];
-  const int owner = atom->map(owner_tag[i]);
-  return owner < 0 ? -1 : owned[owner];
-}
-
-void Ownership::sum_large(std::vector<Load> &column)
-{
-  parts.resize(bodies.large.size() * LOAD_SIZE);
-  sums.resize(parts.size());
-  double *part = parts.data();
-  for (const int ibody : bodies.large) {
-    part = std::copy_n(column[ibody].force, 3, part);
-    part = std::copy_n(column[ibody].torque_space, 3, part);
-  }
-  reduce(MPI_SUM, parts.data(), sums.data(), parts.size(), world);
-  const double *sum = sums.data();
-  for (const int ibody : bodies.large) {
-    std::copy_n(sum, 3, column[ibody].force);
-    std::copy_n(sum + 3, 3, column[ibody].torque_space);
-    sum += LOAD_SIZE;
-  }
+  const int owner = atom->map(tag);
+  return owner < 0 ? -1 : assigned[owner].owned;
 }

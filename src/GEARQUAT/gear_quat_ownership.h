@@ -55,28 +55,30 @@ class Ownership : protected Pointers {
 
   // atoms
 
-  bool in_body(int atom) const { return body_id[atom] != 0; }
+  bool in_body(int atom) const { return assigned[atom].id != 0; }
   /// The user's ID of an atom's body, also for ghosts; 0 for none.
   tagint id_of(int atom) const;
   /// The index of an owned atom's body, as of update(); -1 for none.
   int body_of(int atom) const { return atom < (int) index.size() ? index[atom] : -1; }
   /// The index of the body whose owner is this atom, -1 for none.
-  int owned_by(int atom) const { return owned[atom]; }
+  int owned_by(int atom) const { return assigned[atom].owned; }
   /// The local index of the owner atom of an owned body.
   int owner_of(int ibody) const { return owner_atom[ibody]; }
-  /// The atom ID of the owner of each atom's body, 0 for none; owned atoms come first.
-  const std::vector<tagint> &owner_tags() const { return owner_tag; }
+  /// The atom ID of the owner of an atom's body, 0 for none.
+  tagint owner_tag(int atom) const { return assigned[atom].owner; }
+  /// The same of all owned atoms.
+  std::vector<tagint> owner_tags() const;
   /// The vector from the center of mass of the body to an atom, along the principal axes.
-  const double *arm_of(int atom) const { return arm[atom].data(); }
+  const double *arm_of(int atom) const { return assigned[atom].arm; }
   double mass_of(int atom) const;
   /// An atom of the fix group was created or, with -1, added to a body: it belongs to no body yet.
   void note_outside_atom(int change) { outside_atoms += change; }
   /// label: of all owned atoms, followed by their ghosts, which receive the same.  Collective.
-  void spread_labels(std::vector<double> &label);
+  void spread_labels(std::vector<double> &label) { send(label.data(), 1, true); }
   /// Ghost atoms receive the IDs of their bodies if all bodies are large.  Collective.
   void tell_ids_to_ghosts()
   {
-    if (nlarge == bodies.number()) tell_ghosts();
+    if (number_of_large() == bodies.number()) send(nullptr, 0, true);
   }
 
   /// Positions and orientations of extended atoms in their bodies.
@@ -118,11 +120,11 @@ class Ownership : protected Pointers {
   std::vector<tagint> all_ids() const;
   /// Sets these masks, by IDs, for all bodies.  True if one has changed; collective.
   bool change_masks(const std::map<tagint, Mask> &masks);
-  /// Atoms in bodies, and large bodies, on all ranks.
+  /// Atoms in bodies, on all ranks, and large bodies.
   bigint number_of_atoms() const { return natoms; }
   /// True if some atoms on this rank did not move as rigid bodies when they became bodies.
   bool had_free_atoms() const { return free_atoms; }
-  bigint number_of_large() const { return nlarge; }
+  bigint number_of_large() const { return (bigint) bodies.large.size(); }
   /// The box of the positions of bodies, as Domain::h and boxlo.
   const std::vector<double> &box() const { return last_box; }
   /// Sets this box to the current box of LAMMPS, or to another box.
@@ -139,11 +141,20 @@ class Ownership : protected Pointers {
   void spread_states();
   /// Like spread_states(), if the frames of all bodies that this rank moves match their states.
   void spread_moved();
-  /// loads: for each body, from this rank's atoms.  Sums them over all ranks for bodies that this
-  /// rank moves.
-  void sum(std::vector<Load> &loads);
-  /// Sends the loads of their owners to ghost bodies.
-  void spread(std::vector<Load> &loads);
+  /// Sums over the atoms on this rank, for each body here, become sums over the atoms on all ranks
+  /// for bodies that this rank moves.  Sums: of at most MOST_NUMBERS doubles.
+  static constexpr int MOST_NUMBERS = 12;
+  template <class Sums> void sum(std::vector<Sums> &column)
+  {
+    static_assert(sizeof(Sums) <= MOST_NUMBERS * sizeof(double));
+    sum(reinterpret_cast<double *>(column.data()), sizeof(Sums) / sizeof(double));
+  }
+  /// Sends the values of their owners to ghost bodies.
+  template <class Values> void spread(std::vector<Values> &column)
+  {
+    if (any_ghosts)
+      send(reinterpret_cast<double *>(column.data()), sizeof(Values) / sizeof(double), false);
+  }
 
   // functions called by the fix
 
@@ -157,61 +168,52 @@ class Ownership : protected Pointers {
   void unpack_forward(int n, int first, const double *buf);
   int pack_reverse(int n, int first, double *buf);
   void unpack_reverse(int n, const int *list, const double *buf);
-  int max_exchange() const;
-  int max_forward() const;
-  /// The peak memory, including the store; see note_scratch().
+  int max_exchange() const { return ATOM_SIZE + Extended::RECORD_SIZE + bodies.most_packed(); }
+  int max_forward() const { return 2 + bodies.packed_size(Bodies::OF_GHOST); }
+  /// Including the store.
   double memory_usage() const;
-  /// Records temporary memory of this many bytes, freed before the next step.
-  void note_scratch(double bytes);
 
  private:
   Fix *fix;
   Bodies &bodies;
   Extended records;
 
-  bigint natoms = 0, nlarge = 0;    ///< on all ranks
+  bigint natoms = 0;    ///< on all ranks
   bool free_atoms = false, warned_of_shapes = false;
   int outside_atoms = 0;          ///< created since the fix was defined, in no body
   bool warned_outside = false;    ///< of such atoms
   bool any_ghosts = false;        ///< on some rank an atom belongs to a body of another rank
                                   ///< that is not large; changes only when atoms are exchanged
   std::vector<double> last_box;
-  std::vector<int> owner_atom;    ///< local index of the owner atom of an owned body
-  std::vector<int> index;         ///< see body_of()
-  std::vector<tagint> unseen;     ///< owner atoms of which this rank has not even a ghost
-  double peak = 0.0;              ///< bytes
-
+  std::vector<int> owner_atom;         ///< local index of the owner atom of an owned body
+  std::vector<int> index;              ///< see body_of()
+  std::vector<tagint> unseen;          ///< owner atoms of which this rank has not even a ghost
   std::vector<tagint> large_owners;    ///< atom IDs of the owners of bodies.large, sorted
-  std::vector<double> packed_large;    ///< large bodies while atoms are exchanged
-  std::vector<double> parts, sums;     ///< their loads: from the atoms on this rank, and from all
 
-  // per atom, including ghosts
+  /// An atom, also a ghost.
+  struct Assigned {
+    tagint id = 0;       ///< the user's ID of its body, 0 for none
+    tagint owner = 0;    ///< atom ID of the owner of its body
+    double arm[3] = {};
+    int owned = -1;     ///< the body it owns, or -1
+    int shared = -1;    ///< the same if atoms on other ranks are in that body, otherwise -1
+  };
+  std::vector<Assigned> assigned;
 
-  std::vector<tagint> body_id;      ///< the user's ID of its body, 0 for none
-  std::vector<tagint> owner_tag;    ///< atom ID of the owner of its body
-  std::vector<int> owned;           ///< the body it owns, or -1
-  std::vector<int> shared;    ///< the same if atoms on other ranks are in that body, otherwise -1
-  std::vector<std::array<double, 3>> arm;    ///< see arm_of()
-
-  /// packed: IDs of body and owner, arm, size of history; after the arm the record of an extended
+  /// packed: IDs of body and owner, arm, size of the body; after the arm the record of an extended
   /// atom
   static constexpr int ATOM_SIZE = 6;
-  static constexpr int STATE_SIZE = sizeof(BodyState) / sizeof(double);
-  static constexpr int LOAD_SIZE = sizeof(Load) / sizeof(double);
-  static constexpr int BODY_SIZE = 14 + STATE_SIZE;
-  static constexpr int LAST_SIZE = sizeof(Correction) / sizeof(double);
 
-  enum class Message { GHOSTS, STATES, LOADS, LABELS };
-  Message message = Message::STATES;    ///< the data in communication with ghosts
-  double *labels = nullptr;             ///< of all atoms, while these are sent
-  Load *loads = nullptr;                ///< of all bodies, while these are sent
+  // the data in a message: numbers of all atoms or of all bodies, or, without numbers, ghost bodies
 
-  double present_memory() const;
+  double *numbers = nullptr;
+  int width = 0;    ///< of an atom or a body
+  bool of_atoms = false;
+
   void clear(bool with_extended = false);
   void count();
   void follow_atom_ids();
   void drop_copies();
-  void tell_ghosts();
   void share_owners();
   int add_owned(int atom);
   void remove_owned(int ibody);
@@ -219,20 +221,13 @@ class Ownership : protected Pointers {
   void find_bodies();
   void order_bodies();
   bool take_stock();
-  void pack_large();
-  void gather_large();
   void share_large();
   void promote();
-  void count_large();
-  void sum_large(std::vector<Load> &column);
 
-  int moved_size() const { return BODY_SIZE + LAST_SIZE + LOAD_SIZE + bodies.history_size(); }
-  /// of a large body: atom ID of its owner atom, and the data of an owner
-  int large_size() const { return 1 + moved_size(); }
-  int pack_moved(int ibody, double *buf) const;
-  int unpack_moved(int ibody, const double *buf, int size);
-  int pack_body(int ibody, double *buf) const;
-  int unpack_body(const double *buf, int ibody);
+  void send(double *values, int size, bool from_atoms);
+  void add_from_ghosts(double *values, int size, bool from_atoms);
+  void sum(double *values, int size);
+  double *numbers_of(int atom) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

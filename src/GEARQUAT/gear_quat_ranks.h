@@ -216,12 +216,6 @@ class Parts {
   /// ranks and sent as bytes.  Collective.
   template <typename Item> void merge(std::vector<Item> &items) const { merge(items, shared); }
 
-  double memory_usage() const
-  {
-    return (atom.capacity() + start.capacity() + shared.capacity()) * sizeof(int) +
-        keys.capacity() * sizeof(tagint);
-  }
-
  private:
   Comm *comm;
   MPI_Comm world;

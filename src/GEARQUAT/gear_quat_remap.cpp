@@ -204,7 +204,7 @@ bool Ownership::follow_box()
     Member one = Member();
     one.rank = comm->me;
     one.local = i;
-    one.owner = owner_tags()[i];
+    one.owner = owner_tag(i);
     one.id = id_of(i);
     std::copy_n(arm_of(i), 3, one.arm_body);
     domain->unmap(atom->x[i], atom->image[i], one.found);

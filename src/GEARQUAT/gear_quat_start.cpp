@@ -292,9 +292,6 @@ StartFound Start::search(Forces &forces)
   });
   const StartFound start = find_start(most_start_values(starters), first_spacing(), all,
                                       coupled ? StartPlan::COUPLED : 0.0);
-  const double copies = 3.0 * sizeof(double) * (atom->torque_flag ? 4 : 3) *
-      (atom->nlocal + atom->nghost);    // positions, velocities, forces
-  for (auto &one : starters) one.ownership->note_scratch(one.work.memory_usage() + copies);
   if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
     reason.clear();
     choose(start, all.snapshots);

@@ -23,6 +23,7 @@
 #include "utils.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -220,28 +221,13 @@ void Tolerance::tell_of_step() const
 
 double Tolerance::element(int n) const
 {
-  switch (n) {
-    case STEP:
-      return update->dt;
-    case SMALLEST:
-      return record.smallest;
-    case MEAN:
-      return record.steps > 0.0 ? record.time / record.steps : 0.0;
-    case LOADS:
-      return remembered.loads();
-    case MEAN_LOADS:
-      return record.steps > 0.0 ? record.loads / record.steps : 0.0;
-    case LARGEST_ERROR:
-      return record.largest;
-    case REPEATED:
-      return record.repeated;
-    case LENGTH:
-      return record.last_length;
-    case ENERGY:
-      return record.last_energy * force->mvv2e;
-    default:
-      return record.held;
-  }
+  const Record &all = record;
+  const double steps = std::max(all.steps, 1.0);
+  return std::array<double, ELEMENTS>{update->dt,        all.smallest,
+                                      all.time / steps,  (double) remembered.loads(),
+                                      all.loads / steps, all.largest,
+                                      all.held,          all.repeated,
+                                      all.last_length,   all.last_energy * force->mvv2e}[n];
 }
 
 void Tolerance::fields(Fields &v)

@@ -59,20 +59,8 @@ class Repeat : protected Pointers {
 
 class Tolerance : protected Pointers {
  public:
-  /// Elements of the fix's vector, after the elements of Sums.
-  enum {
-    STEP,
-    SMALLEST,
-    MEAN,
-    LOADS,
-    MEAN_LOADS,
-    LARGEST_ERROR,
-    HELD,
-    REPEATED,
-    LENGTH,
-    ENERGY,
-    ELEMENTS
-  };
+  /// Elements of the fix's vector, after the elements of Sums, as listed in the manual.
+  static constexpr int ELEMENTS = 10;
 
   /// Sums for the outputs.
   struct Record {

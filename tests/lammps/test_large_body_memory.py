@@ -75,7 +75,7 @@ def test_beside_fix_rigid(peak, ranks):
 
 
 def test_reported(lmp_tree):
-    """LAMMPS' sum includes the data of the atoms and the temporary copies made by the start."""
+    """LAMMPS' sum includes the data of the atoms."""
     per_atom = {}
     for style in (FIX, RIGID):
         log = lmp_tree.succeed(WALL.format(style=style, cells=20, run="run 1\nrun 0")).log

@@ -27,10 +27,10 @@ Vectors some_arms(Check::Numbers &numbers, int n)
 
 Arms sums_of(const Vectors &arms)
 {
-  Arms sums = {double(arms.size()), {}, {}};
+  Arms sums = {double(arms.size()), {}};
   for (const auto &arm : arms) {
-    add3(arm.data(), sums.sum);
-    for (int n = 0; n < 9; ++n) sums.products[n] += arm[n / 3] * arm[n % 3];
+    add3(arm.data(), sums.sums.arm);
+    for (int n = 0; n < 9; ++n) sums.sums.products[n] += arm[n / 3] * arm[n % 3];
   }
   return sums;
 }
@@ -54,12 +54,12 @@ Twist nearest_to(const Vectors &arms, const Vectors &vectors, Mask off = 0)
 
 Move move_to(const Vectors &arms, const Vectors &motions, Mask off = 0)
 {
-  double sum[3] = {}, products[9] = {};
+  Displacements sums = {};
   for (size_t n = 0; n < arms.size(); ++n) {
-    add3(motions[n].data(), sum);
-    for (int k = 0; k < 9; ++k) products[k] += motions[n][k / 3] * arms[n][k % 3];
+    add3(motions[n].data(), sums.way);
+    for (int k = 0; k < 9; ++k) sums.products[k] += motions[n][k / 3] * arms[n][k % 3];
   }
-  return nearest_move(sums_of(arms), off, sum, products);
+  return nearest_move(sums_of(arms), off, sums);
 }
 
 /// The position of an arm after a move, from the original center of mass.
