@@ -214,8 +214,15 @@ void FixGearQuat::setup_pre_neighbor()
   if (met_atoms && !minimization->is_on()) motion->take_velocities(update->ntimestep, false);
   const bool from_atoms = args->infile.empty() && !any_differs(stated);
   const bool takes_over = from_atoms && (args->reinit || !met_atoms);
-  if (!takes_over && !minimization->is_on()) sites->warn_of_other_places();
-  if (takes_over && !sites->match_bodies()) {
+  const Sites::Changes found = sites->changes();
+  if (!takes_over && !minimization->is_on() && found.moved && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: atom {} was moved away from its place in body {}, and with "
+                   "reinit no, or infile, the body puts it back in the first step; use reinit yes, "
+                   "or define the fix after the change",
+                   found.moved, found.body);
+  if (takes_over && found.any) {
+    sites->refuse_tears();
     sites->take_out_flow();
     ownership->recreate();
     driven_box->note_images();

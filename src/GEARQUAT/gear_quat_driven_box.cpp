@@ -189,7 +189,6 @@ void DrivenBox::place_sites()
   if (bodies.have_copies()) ownership.spread_moved();
   sites.place(false);
   ownership.note_box();
-  if (step.is_within()) others.note_place();
 }
 
 /* ----------------------------------------------------------------------

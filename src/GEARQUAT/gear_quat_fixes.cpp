@@ -21,7 +21,6 @@
 #include "utils.h"
 
 #include <algorithm>
-#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -35,7 +34,6 @@ OtherFixes::OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Ownership &o
     Pointers(lmp),
     fix(fix), bodies(bodies), ownership(ownership), sites(sites), args(args)
 {
-  std::fill_n(noted, 3, std::numeric_limits<double>::quiet_NaN());    // equal to no number
 }
 
 /* ----------------------------------------------------------------------
@@ -270,33 +268,17 @@ bool OtherFixes::gather_impulses()
    changes that bodies do not follow
 ------------------------------------------------------------------------- */
 
-void OtherFixes::note(double **values)
-{
-  if (sample < sites.number()) std::copy_n(values[sites[sample].atom], 3, noted);
-}
-
-bool OtherFixes::is_noted(const Site &site, double **values) const
-{
-  return std::equal(noted, noted + 3, values[site.atom]);
-}
-
-/// Starts the next sample.
-void OtherFixes::note_velocity()
+void OtherFixes::check_velocities(bool all)
 {
   if (++sample >= sites.number()) sample = 0;
-  note(atom->v);
-}
-
-void OtherFixes::note_place()
-{
-  note(atom->x);
-}
-
-void OtherFixes::check_velocities()
-{
-  if (warned_change || sample >= sites.number()) return;
-  const Site &site = sites[sample];
-  if (!is_noted(site, atom->v) && !sites.is_as_fast(site)) tell(site, "velocity");
+  const Site *const first = sites.begin() + (all ? 0 : sample);
+  for (const Site *site = first; site < sites.end() && !warned_change; ++site) {
+    if (all && !sites.is_there(*site))
+      tell(*site, "place");
+    else if (!sites.is_as_fast(*site))
+      tell(*site, "velocity");
+    if (!all) break;
+  }
 }
 
 void OtherFixes::check_places()
@@ -313,19 +295,7 @@ void OtherFixes::check_places()
     return;
   }
   if (warned_change || sample >= sites.number()) return;
-  const Site &site = sites[sample];
-  if (!is_noted(site, atom->x) && !sites.is_there(site)) tell(site, "place");
-}
-
-void OtherFixes::check_all()
-{
-  for (const Site &site : sites) {
-    if (warned_change) return;
-    if (!sites.is_there(site))
-      tell(site, "place");
-    else if (!sites.is_as_fast(site))
-      tell(site, "velocity");
-  }
+  if (!sites.is_there(sites[sample])) tell(sites[sample], "place");
 }
 
 void OtherFixes::tell(const Site &site, const char *what)

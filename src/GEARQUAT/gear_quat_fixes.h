@@ -8,8 +8,7 @@
    or the run does not begin.  Effects of styles that no table lists are detected by samples.
 
    The fix calls init() before every run; take_velocities() before a step, with the velocities left
-   by the previous step; check_places() after the forces, with the predicted positions; note_place()
-   and note_velocity() when it has placed its sites. */
+   by the previous step; check_places() after the forces, with the predicted positions. */
 
 #ifndef LMP_GEAR_QUAT_FIXES_H
 #define LMP_GEAR_QUAT_FIXES_H
@@ -64,16 +63,13 @@ class OtherFixes : protected Pointers {
   /// the run if `end`, and is otherwise ignored.  Collective.
   std::vector<int> take_velocities(bigint step, bool end);
 
-  // These functions are local and test a single site unless a fix is known to move atoms.  It is
-  // sufficient to compare this site with note_velocity() and note_place(), which were called right
-  // after the site had been placed.
+  // These functions are local and test a single site, another one in each step, unless a fix is
+  // known to move atoms.
 
-  void note_velocity();
-  void check_velocities();
-  void note_place();
+  /// Before a step.  all: tests the positions and velocities of all sites.
+  void check_velocities(bool all);
+  /// The forces have been evaluated.
   void check_places();
-  /// Tests the positions and velocities of all sites, at the beginning of a run.
-  void check_all();
 
  private:
   const Fix *fix;
@@ -84,7 +80,6 @@ class OtherFixes : protected Pointers {
   std::vector<const Fix *> taken;      ///< bodies adopt velocities from these
   std::vector<const Fix *> watched;    ///< these may move single atoms
   int sample = 0;                      ///< the site that is tested next
-  double noted[3];                     ///< its velocity or position
   bool warned_noise = false;           ///< warned of random forces and the like
   bool warned_change = false;          ///< warned of an unknown change in this run
 
@@ -96,8 +91,6 @@ class OtherFixes : protected Pointers {
   void refuse_thermostat(const Fix *other) const;
   void refuse(const Fix *other, const ActOnAtoms &row, tagint atom) const;
   bool gather_impulses();
-  void note(double **values);
-  bool is_noted(const Site &site, double **values) const;
   void tell(const Site &site, const char *what);
   std::string names(const std::vector<const Fix *> &fixes) const;
 };

@@ -113,6 +113,7 @@ void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
   assembly.for_sites([&](const Assembly::Made &one, int i, const double *arm_body) {
     assigned[i].id = one.body.id;
     assigned[i].owner = one.owner;
+    assigned[i].mass = mass_of(i);
     std::copy_n(arm_body, 3, assigned[i].arm);
     free_atoms = free_atoms || one.moves_apart(atom->v[i], arm_body);
     if (any_extended) records.attach(i, mass_of(i), one.state.q);
@@ -431,7 +432,8 @@ int Ownership::pack_exchange(int i, double *buf) const
   buf[m++] = ubuf(one.id).d;
   if (one.id == 0) return m;
   buf[m++] = ubuf(one.owner).d;
-  for (int k = 0; k < 3; ++k) buf[m++] = one.arm[k];
+  for (const double number : one.arm) buf[m++] = number;
+  buf[m++] = one.mass;
   m += records.pack(i, buf + m);
   const int size = one.owned < 0 ? 0 : bodies.packed_size(Bodies::MOVING);
   buf[m++] = ubuf(size).d;
@@ -447,7 +449,8 @@ int Ownership::unpack_exchange(int i, const double *buf)
   one.id = (tagint) ubuf(buf[m++]).i;
   if (one.id == 0) return m;
   one.owner = (tagint) ubuf(buf[m++]).i;
-  for (int k = 0; k < 3; ++k) one.arm[k] = buf[m++];
+  for (double &number : one.arm) number = buf[m++];
+  one.mass = buf[m++];
   m += records.unpack(i, buf + m);
   const int size = (int) ubuf(buf[m++]).i;
   if (size > 0) bodies.unpack(add_owned(i), Bodies::MOVING, buf + m, size);

@@ -37,16 +37,12 @@ namespace LAMMPS_NS::GearQuat {
 
 struct Former;
 
-/// Result of a comparison, the same on all ranks; bodies are given by their IDs, 0 for none.
+/// Counts, the same on all ranks; bodies are given by their IDs, 0 for none.
 struct Comparison {
   bigint removed_freedoms = 0;    ///< removed by rigidity from bodies wholly in the group
   tagint divided = 0;             ///< a body with some of its atoms in the group
   tagint broken = 0;              ///< a body that has lost atoms, or that is given by several IDs
   bigint left = 0, had = 0;       ///< its atoms now and before
-  tagint mass_changed = 0;        ///< a body whose atoms have another mass, center or inertia
-  tagint torn = 0;                ///< a body whose atoms are now whole periods further apart
-  tagint reshaped = 0;            ///< a body with other distances between its atoms
-  tagint cut = 0;                 ///< a body that a change of the box has torn at its faces
 };
 
 class Ownership : protected Pointers {
@@ -71,6 +67,11 @@ class Ownership : protected Pointers {
   /// The vector from the center of mass of the body to an atom, along the principal axes.
   const double *arm_of(int atom) const { return assigned[atom].arm; }
   double mass_of(int atom) const;
+  /// True if the mass of an atom has changed since its body was made from masses.
+  bool has_other_mass(int atom) const
+  {
+    return mass_of(atom) != assigned[atom].mass && !bodies.body_at(index[atom]).from_file;
+  }
   /// An atom of the fix group was created or, with -1, added to a body: it belongs to no body yet.
   void note_outside_atom(int change) { outside_atoms += change; }
   /// label: of all owned atoms, followed by their ghosts, which receive the same.  Collective.
@@ -112,8 +113,8 @@ class Ownership : protected Pointers {
   /// Ends the run if a body has lost some of its atoms, and updates changed atom IDs; needs no
   /// ghosts.
   void check_whole();
-  /// Compares numbers and masses of atoms with their bodies.  Needs no ghost atoms, so it can be
-  /// called at any time.  groupbit: the group whose degrees of freedom are requested, 0 for none.
+  /// Compares numbers of atoms with their bodies.  Needs no ghost atoms, so it can be called at any
+  /// time.  groupbit: the group whose degrees of freedom are requested, 0 for none.
   /// In gear_quat_compare.cpp.  Collective.
   Comparison count_atoms(int groupbit = 0) const;
   /// The IDs of all bodies, sorted, on all ranks.  Collective.
@@ -195,14 +196,15 @@ class Ownership : protected Pointers {
     tagint id = 0;       ///< the user's ID of its body, 0 for none
     tagint owner = 0;    ///< atom ID of the owner of its body
     double arm[3] = {};
-    int owned = -1;     ///< the body it owns, or -1
-    int shared = -1;    ///< the same if atoms on other ranks are in that body, otherwise -1
+    double mass = 0.0;    ///< when the body was made
+    int owned = -1;       ///< the body it owns, or -1
+    int shared = -1;      ///< the same if atoms on other ranks are in that body, otherwise -1
   };
   std::vector<Assigned> assigned;
 
-  /// packed: IDs of body and owner, arm, size of the body; after the arm the record of an extended
+  /// packed: IDs of body and owner, arm, mass, size of the body; after the mass the record of an extended
   /// atom
-  static constexpr int ATOM_SIZE = 6;
+  static constexpr int ATOM_SIZE = 7;
 
   // the data in a message: numbers of all atoms or of all bodies, or, without numbers, ghost bodies
 

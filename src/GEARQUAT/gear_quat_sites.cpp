@@ -18,11 +18,6 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// atoms count as moved by the user if their deviation exceeds rounding of coordinates and
-// velocities, relative to box and body
-
-static constexpr double SAME = 1.0e-11;
-
 /// LAMMPS' arrays of vectors are one block of memory.
 static double *first_of(double **vectors)
 {
@@ -278,21 +273,21 @@ void Sites::unwrapped(const Site &site, double *found, double *expected) const
   }
 }
 
-static bool same(const double *a, const Sites::Expected &expected)
+static bool near(const double *a, const Sites::Expected &expected, double same)
 {
   for (int k = 0; k < 3; ++k)
-    if (!(std::fabs(a[k] - expected.value[k]) <= SAME * expected.size)) return false;
+    if (!(std::fabs(a[k] - expected.value[k]) <= same * expected.size)) return false;
   return true;
 }
 
-bool Sites::is_there(const Site &site) const
+bool Sites::is_there(const Site &site, double same) const
 {
-  return same(atom->x[site.atom], expected_position(site));
+  return near(atom->x[site.atom], expected_position(site), same);
 }
 
 bool Sites::is_as_fast(const Site &site) const
 {
-  return same(atom->v[site.atom], expected_velocity(site));
+  return near(atom->v[site.atom], expected_velocity(site), SAME);
 }
 
 /* ----------------------------------------------------------------------

@@ -57,12 +57,17 @@ class Sites : protected Pointers {
   void advance_densities(double step);
   /// Sets orientations and rates of extended atoms, if only these have changed.
   void place_extended();
-  /// True if masses, positions and velocities of all atoms match their bodies.  Ends the run if
-  /// image flags or another box have torn a body.  Sites are listed, and Ownership::box() is the
-  /// previous box.  In gear_quat_compare.cpp.  Collective.
-  bool match_bodies() const;
-  /// Rank 0 warns if an atom is not where its body will put it.  Collective.
-  void warn_of_other_places() const;
+  /// Differences between atoms and their bodies.  In gear_quat_compare.cpp.
+  struct Changes {
+    bool any;        ///< of masses, positions, velocities or orientations
+    tagint moved;    ///< an atom that is not where its body will put it, 0 for none
+    tagint body;     ///< its body
+  };
+  /// Collective.
+  Changes changes() const;
+  /// Ends the run if image flags or another box have torn a body; rank 0 warns of another shape.
+  /// Ownership::box() is the previous box.  Collective.
+  void refuse_tears() const;
   /// The number of times that sites were listed or placed, the same on all ranks: results computed
   /// from positions or loads at another number are out of date.
   int placements() const { return nplacements; }
@@ -76,8 +81,10 @@ class Sites : protected Pointers {
   Expected expected_velocity(const Site &site) const;
   /// Unwrapped positions: the one of the atom, and the one computed from its body.
   void unwrapped(const Site &site, double *found, double *expected) const;
-  // True if position or velocity of the atom match its body, up to rounding.
-  bool is_there(const Site &site) const;
+  // True if position or velocity of the atom match its body, by default up to rounding of
+  // coordinates and velocities, relative to box and body.
+  static constexpr double SAME = 1.0e-11;
+  bool is_there(const Site &site, double same = SAME) const;
   bool is_as_fast(const Site &site) const;
 
   /// The number of periods between the unwrapped and the wrapped position of an atom of a body.

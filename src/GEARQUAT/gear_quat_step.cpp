@@ -99,7 +99,6 @@ void Step::end(double **f, double **torque)
   hold(f);
   if (bodies.have_copies()) ownership.spread_moved();
   sites.place(true);
-  others.note_velocity();
   if (is_due(readers.of_atoms)) comm->forward_comm();    // ghosts are where forces were evaluated
 }
 
@@ -124,10 +123,7 @@ void Step::choose_next()
 /// In the first step of a run with `pre no` bodies have not been compared with their atoms yet.
 void Step::check_other_fixes()
 {
-  if (update->ntimestep == update->firststep + 1 && !compared)
-    others.check_all();
-  else
-    others.check_velocities();
+  others.check_velocities(update->ntimestep == update->firststep + 1 && !compared);
   compared = false;
 }
 
@@ -181,7 +177,6 @@ void Step::place_prediction()
 {
   if (bodies.have_copies()) ownership.spread_moved();
   sites.place(velocities_read);
-  others.note_place();
 }
 
 void Step::correct(double **f)
