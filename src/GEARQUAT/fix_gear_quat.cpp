@@ -13,19 +13,9 @@
 
 #include "fix_gear_quat.h"
 
-#include "gear_quat_arguments.h"
-#include "gear_quat_driven_box.h"
-#include "gear_quat_fixes.h"
-#include "gear_quat_fleet.h"
-#include "gear_quat_minimize.h"
-#include "gear_quat_motion.h"
-#include "gear_quat_outputs.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_report.h"
-#include "gear_quat_restart.h"
 #include "gear_quat_scene.h"
-#include "gear_quat_step.h"
-#include "gear_quat_template.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -46,7 +36,19 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
-FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), args(lmp, narg, arg), bodies(args.scheme),
+    ownership(lmp, this, bodies, args.scheme), sites(lmp, bodies, ownership),
+    other_fixes(lmp, this, bodies, ownership, sites, args),
+    step(lmp, this, args, fleet, bodies, ownership, sites, other_fixes,
+         [this](int vflag, double **f) {
+           tally_virial(vflag, f);
+         }),
+    motion(lmp, this, args, fleet, bodies, ownership, sites, other_fixes, step),
+    driven_box(lmp, this, args, bodies, ownership, sites, other_fixes, step),
+    minimization(lmp, bodies, ownership, sites), restarts(lmp, this, bodies, ownership, motion),
+    respa(lmp), table(lmp, bodies, sites), sums(lmp, bodies),
+    extracts(lmp, bodies, ownership, sums, args.mol)
 {
   time_integrate = rigid_flag = 1;
   scalar_flag = vector_flag = array_flag = local_flag = 1;
@@ -63,38 +65,18 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   create_attribute = 1;
   restart_global = restart_peratom = restart_file = 1;
 
-  args.reset(new Arguments(lmp, narg, arg));
-  add_citations(lmp, *args);
-  ecouple_flag = args->thermostat.damp > 0.0 || args->pressure.any();
+  add_citations(lmp, args);
+  ecouple_flag = args.thermostat.damp > 0.0 || args.pressure.any();
   constexpr int CHANGES[] = {BOX_CHANGE_X,  BOX_CHANGE_Y,  BOX_CHANGE_Z,
                              BOX_CHANGE_YZ, BOX_CHANGE_XZ, BOX_CHANGE_XY};
   for (int k = 0; k < PressureWords::COMPONENTS; ++k)
-    if (args->pressure.on[k]) box_change |= CHANGES[k];
-  if (args->pressure.any()) no_change_box = 1;
-  if (args->pressure.shears()) force_reneighbor = 1, next_reneighbor = -1;
-  fleet.reset(new Fleet);
-  bodies.reset(new Bodies(args->scheme));
-  ownership.reset(new Ownership(lmp, this, *bodies, args->scheme));
-  sites.reset(new Sites(lmp, *bodies, *ownership));
-  other_fixes.reset(new OtherFixes(lmp, this, *bodies, *ownership, *sites, *args));
-  const auto tally = [this](int vflag, double **f) {
-    tally_virial(vflag, f);
-  };
-  step.reset(new Step(lmp, this, *args, *fleet, *bodies, *ownership, *sites, *other_fixes, tally));
-  motion.reset(
-      new Motion(lmp, this, *args, *fleet, *bodies, *ownership, *sites, *other_fixes, *step));
-  driven_box.reset(
-      new DrivenBox(lmp, this, *args, *bodies, *ownership, *sites, *other_fixes, *step));
-  minimization.reset(new Minimization(lmp, *bodies, *ownership, *sites));
-  restarts.reset(new Restart(lmp, this, *bodies, *ownership, *motion));
-  respa.reset(new RespaForces(lmp));
-  table.reset(new BodyTable(lmp, *bodies, *sites));
-  sums.reset(new Sums(lmp, *bodies));
-  size_vector = Sums::ELEMENTS + motion->elements();
-  extracts.reset(new Extract(lmp, *bodies, *ownership, *sums, args->mol));
-  maxexchange = ownership->max_exchange();
-  comm_forward = ownership->max_forward();
+    if (args.pressure.on[k]) box_change |= CHANGES[k];
+  if (args.pressure.any()) no_change_box = 1;
+  if (args.pressure.shears()) force_reneighbor = 1, next_reneighbor = -1;
+  maxexchange = ownership.max_exchange();
+  comm_forward = ownership.max_forward();
   comm_reverse = Ownership::MOST_NUMBERS;
+  size_vector = Sums::ELEMENTS + motion.elements();
 
   if (group->dynamic[igroup])
     error->all(
@@ -102,26 +84,26 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
         "Fix gear/quat: group {} is dynamic, but bodies keep their atoms; use a static group",
         group->names[igroup]);
   create_bodies();
-  if (bodies->number() == 0 && args->mol.empty())
+  if (bodies.number() == 0 && args.mol.empty())
     error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
-  motion->meet_bodies();
-  atoms_are_free = over_ranks(MPI_MAX, (int) ownership->had_free_atoms(), world);
+  motion.meet_bodies();
+  atoms_are_free = over_ranks(MPI_MAX, (int) ownership.had_free_atoms(), world);
   count_rows();
-  size_array_rows_variable = !args->mol.empty();    // rows may be requested before they exist
+  size_array_rows_variable = !args.mol.empty();    // rows may be requested before they exist
 
   // callbacks last, because LAMMPS would call a fix whose constructor has failed
   extlist = new int[size_vector]{1, 1};
-  for (int n = 0; n < motion->elements(); ++n) extlist[Sums::ELEMENTS + n] = motion->extensive(n);
+  for (int n = 0; n < motion.elements(); ++n) extlist[Sums::ELEMENTS + n] = motion.extensive(n);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
   if (comm->me == 0)
-    utils::logmesg(lmp, "  {} rigid bodies with {} atoms\n", bodies->number(),
-                   ownership->number_of_atoms());
+    utils::logmesg(lmp, "  {} rigid bodies with {} atoms\n", bodies.number(),
+                   ownership.number_of_atoms());
 }
 
 void FixGearQuat::create_bodies()
 {
-  ownership->create(args->body_ids(groupbit), read_given_bodies(lmp, args->infile));
+  ownership.create(args.body_ids(groupbit), read_given_bodies(lmp, args.infile));
 }
 
 FixGearQuat::~FixGearQuat()
@@ -137,7 +119,7 @@ int FixGearQuat::setmask()
   resume();
   show_bodies();    // local data may be requested before the first run
   return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR |
-      INITIAL_INTEGRATE_RESPA | FINAL_INTEGRATE_RESPA | (step->tolerance ? END_OF_STEP : 0) |
+      INITIAL_INTEGRATE_RESPA | FINAL_INTEGRATE_RESPA | (step.tolerance ? END_OF_STEP : 0) |
       MIN_PRE_EXCHANGE | MIN_PRE_NEIGHBOR | MIN_PRE_FORCE | MIN_POST_FORCE | MIN_ENERGY;
 }
 
@@ -148,146 +130,146 @@ int FixGearQuat::setmask()
 /// All fixes gear/quat of this run.
 void FixGearQuat::meet_fleet()
 {
-  fleet->members.clear();
+  fleet.members.clear();
   for (auto *other : modify->get_fix_list())
     if (auto *same = dynamic_cast<FixGearQuat *>(other))
-      fleet->members.push_back({same, same->motion.get(), same->ownership.get(),
-                                same->step->tolerance != nullptr, same->args->scheme.tuned});
+      fleet.members.push_back({same, &same->motion, &same->ownership,
+                               same->step.tolerance != nullptr, same->args.scheme.tuned});
 }
 
 void FixGearQuat::init()
 {
   meet_fleet();
-  refuse_scene(lmp, this, *fleet, *ownership);
-  minimization->end();
+  refuse_scene(lmp, this, fleet, ownership);
+  minimization.end();
   if (update->whichflag == 2) {
-    driven_box->rest();
-    minimization->init();
-    sites->expect_forces(true);
+    driven_box.rest();
+    minimization.init();
+    sites.expect_forces(true);
     return;
   }
-  driven_box->init();
+  driven_box.init();
   if (ecouple_flag && thermo_energy)
     error->all(FLERR,
                "Fix gear/quat temp cannot be used with fix_modify energy yes: the scalar has the "
                "energy of the thermostat, too, which thermo keyword econserve adds; leave it out");
-  other_fixes->init();
+  other_fixes.init();
   if (!reported) {
-    stated = read_stated(lmp, args->mol);
-    warn_of_partial_molecules(lmp, this, *args, *fleet, *ownership);
+    stated = read_stated(lmp, args.mol);
+    warn_of_partial_molecules(lmp, this, args, fleet, ownership);
   }
-  motion->init();
-  step->expect_readers(!reader_of_predicted_velocities(lmp, this).empty());
-  sites->expect_forces(makes_forces(lmp, this) || other_fixes->any_taken());
+  motion.init();
+  step.expect_readers(!reader_of_predicted_velocities(lmp, this).empty());
+  sites.expect_forces(makes_forces(lmp, this) || other_fixes.any_taken());
 }
 
 void FixGearQuat::reset_dt()
 {
-  step->follow_length();
+  step.follow_length();
 }
 
 /// In a minimization, LAMMPS continues from the end of the last line search.
 void FixGearQuat::deform(int flag)
 {
-  if (flag == 0 && minimization->is_on()) minimization->put_back();
-  flag == 0 ? driven_box->begin_remap() : driven_box->end_remap();
+  if (flag == 0 && minimization.is_on()) minimization.put_back();
+  flag == 0 ? driven_box.begin_remap() : driven_box.end_remap();
 }
 
 void FixGearQuat::setup_pre_exchange()
 {
   for (int i = 0; atom->vest && i < atom->nlocal; ++i)    // no fix extrapolates the first ones
-    if (ownership->in_body(i)) std::copy_n(atom->v[i], 3, atom->vest[i]);
-  if (ownership->follow_box())
-    motion->forget("Fix gear/quat: the box was remapped since the last run; histories are rebuilt");
-  if (step->coupling && !step->coupling->knows_box())
-    motion->forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
-  driven_box->begin_setup();
+    if (ownership.in_body(i)) std::copy_n(atom->v[i], 3, atom->vest[i]);
+  if (ownership.follow_box())
+    motion.forget("Fix gear/quat: the box was remapped since the last run; histories are rebuilt");
+  if (step.coupling && !step.coupling->knows_box())
+    motion.forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
+  driven_box.begin_setup();
 }
 
 /// Bodies keep their state between runs, and adopt changes that the user has made in the atoms.
 void FixGearQuat::setup_pre_neighbor()
 {
-  ownership->check_whole();
-  ownership->choose_large();
+  ownership.check_whole();
+  ownership.choose_large();
   update_bodies();
-  driven_box->follow_images();
-  if (met_atoms && !minimization->is_on()) motion->take_velocities(update->ntimestep, false);
-  const bool from_atoms = args->infile.empty() && !any_differs(stated);
-  const bool takes_over = from_atoms && (args->reinit || !met_atoms);
-  const Sites::Changes found = sites->changes();
-  if (!takes_over && !minimization->is_on() && found.moved && comm->me == 0)
+  driven_box.follow_images();
+  if (met_atoms && !minimization.is_on()) motion.take_velocities(update->ntimestep, false);
+  const bool from_atoms = args.infile.empty() && !any_differs(stated);
+  const bool takes_over = from_atoms && (args.reinit || !met_atoms);
+  const Sites::Changes found = sites.changes();
+  if (!takes_over && !minimization.is_on() && found.moved && comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: atom {} was moved away from its place in body {}, and with "
                    "reinit no, or infile, the body puts it back in the first step; use reinit yes, "
                    "or define the fix after the change",
                    found.moved, found.body);
   if (takes_over && found.any) {
-    sites->refuse_tears();
-    sites->take_out_flow();
-    ownership->recreate();
-    driven_box->note_images();
+    sites.refuse_tears();
+    sites.take_out_flow();
+    ownership.recreate();
+    driven_box.note_images();
     update_bodies();
-    motion->forget("Fix gear/quat: atoms were changed since the last run; bodies are rebuilt from "
-                   "them");
+    motion.forget("Fix gear/quat: atoms were changed since the last run; bodies are rebuilt from "
+                  "them");
   }
-  ownership->note_box();
-  if (!told_of_ids) told_of_ids = warn_of_molecule_ids(lmp, this, *args, *ownership);
-  motion->impose_masks();
+  ownership.note_box();
+  if (!told_of_ids) told_of_ids = warn_of_molecule_ids(lmp, this, args, ownership);
+  motion.impose_masks();
   met_atoms = true;
-  step->note_comparison();
+  step.note_comparison();
   count_rows();
 }
 
 /// Atoms are changed only after all checks that may end the run.
 void FixGearQuat::setup(int vflag)
 {
-  step->expect_readers_at_end(readers_at_end(lmp, this));
-  ownership->spread_states();
-  if (!reported) other_fixes->check_gravity();
-  step->gather(atom->f, atom->torque);
-  driven_box->follow();
-  motion->begin_run();
-  sites->place_velocities();
-  bodies->forget_work();    // positions belong to the corrected poses
+  step.expect_readers_at_end(readers_at_end(lmp, this));
+  ownership.spread_states();
+  if (!reported) other_fixes.check_gravity();
+  step.gather(atom->f, atom->torque);
+  driven_box.follow();
+  motion.begin_run();
+  sites.place_velocities();
+  bodies.forget_work();    // positions belong to the corrected poses
   tally_virial(vflag, atom->f);
   show_bodies();
   motion_acts = true;
-  if (!reported) warn_of_excluded_images(lmp, this, *bodies, *ownership, *sites);
-  if (!reported) report_scene(lmp, this, *args, *fleet, *bodies, *ownership, *sites);
+  if (!reported) warn_of_excluded_images(lmp, this, bodies, ownership, sites);
+  if (!reported) report_scene(lmp, this, args, fleet, bodies, ownership, sites);
   reported = true;
   atoms_are_free = false;
 }
 
 void FixGearQuat::count_rows()
 {
-  size_array_rows = std::max(size_array_rows, (int) bodies->number());
+  size_array_rows = std::max(size_array_rows, (int) bodies.number());
 }
 
 /// LAMMPS does not call a function to request local data.
 void FixGearQuat::show_bodies()
 {
-  array_local = table->local();
-  size_local_rows = bodies->nowned();
+  array_local = table.local();
+  size_local_rows = bodies.nowned();
 }
 
 void FixGearQuat::pre_exchange()
 {
-  if (step->coupling) step->coupling->flip_box();
+  if (step.coupling) step.coupling->flip_box();
 }
 
 /// Atoms were exchanged, and other fixes may have inserted or removed bodies.
 void FixGearQuat::pre_neighbor()
 {
   update_bodies();
-  driven_box->follow_images();
-  if (driven_box->any()) ownership->note_box();    // fix deform may have flipped the box
+  driven_box.follow_images();
+  if (driven_box.any()) ownership.note_box();    // fix deform may have flipped the box
   count_rows();
 }
 
 void FixGearQuat::update_bodies()
 {
-  ownership->update();
-  sites->list();
+  ownership.update();
+  sites.list();
 }
 
 /* ----------------------------------------------------------------------
@@ -309,40 +291,40 @@ void FixGearQuat::final_integrate()
 void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
   if (motion_acts) {
-    motion->take_velocities(update->ntimestep - 1, true);
-    if (motion->begins_steps()) Motion::begin_steps(*fleet, f, torque);
-    motion_acts = other_fixes->any_taken();
+    motion.take_velocities(update->ntimestep - 1, true);
+    if (motion.begins_steps()) Motion::begin_steps(fleet, f, torque);
+    motion_acts = other_fixes.any_taken();
   }
-  driven_box->begin_step();
-  sites->advance_densities(update->dt);
-  step->begin(vflag, f);
+  driven_box.begin_step();
+  sites.advance_densities(update->dt);
+  step.begin(vflag, f);
 }
 
 void FixGearQuat::end_step(double **f, double **torque)
 {
-  step->end(f, torque);
-  sites->advance_densities(update->dt);
-  motion->look_at_vibrations();
-  driven_box->end_step();
-  if (box_change != NO_BOX_CHANGE) ownership->note_box();
-  if (step->shows_local_data()) show_bodies();
-  if (step->coupling && step->coupling->is_tilted()) next_reneighbor = update->ntimestep + 1;
+  step.end(f, torque);
+  sites.advance_densities(update->dt);
+  motion.look_at_vibrations();
+  driven_box.end_step();
+  if (box_change != NO_BOX_CHANGE) ownership.note_box();
+  if (step.shows_local_data()) show_bodies();
+  if (step.coupling && step.coupling->is_tilted()) next_reneighbor = update->ntimestep + 1;
   compare_calls(world);
 }
 
 /// With keyword tolerance only, when all fixes have finished the step.
 void FixGearQuat::end_of_step()
 {
-  step->choose_next();
+  step.choose_next();
 }
 
 void FixGearQuat::post_run()
 {
-  if (minimization->is_on()) {
+  if (minimization.is_on()) {
     end_minimization();
     return;
   }
-  driven_box->end_run();
+  driven_box.end_run();
 }
 
 /// Virial of the constraint forces, at the pose at which the forces were evaluated.
@@ -350,12 +332,12 @@ void FixGearQuat::tally_virial(int vflag, double **f)
 {
   v_init(vflag);
   if (!evflag) return;
-  const auto motion = minimization->is_on() ? Sites::Turning::NO : Sites::Turning::YES;
-  sites->visit_constraint_forces(f, cvflag_atom != 0, motion,
-                                 [this](int i, Sites::ConstraintForce &constraint) {
-                                   v_tally(1, &i, 1.0, constraint.virial, constraint.arm,
-                                           constraint.force, constraint.centroid);
-                                 });
+  const auto motion = minimization.is_on() ? Sites::Turning::NO : Sites::Turning::YES;
+  sites.visit_constraint_forces(f, cvflag_atom != 0, motion,
+                                [this](int i, Sites::ConstraintForce &constraint) {
+                                  v_tally(1, &i, 1.0, constraint.virial, constraint.arm,
+                                          constraint.force, constraint.centroid);
+                                });
 }
 
 /* ----------------------------------------------------------------------
@@ -364,35 +346,35 @@ void FixGearQuat::tally_virial(int vflag, double **f)
 
 void FixGearQuat::min_setup(int vflag)
 {
-  motion->forget("Fix gear/quat: minimize moves the bodies; histories are rebuilt");
-  ownership->spread_states();
-  minimization->measure();
+  motion.forget("Fix gear/quat: minimize moves the bodies; histories are rebuilt");
+  ownership.spread_states();
+  minimization.measure();
   min_post_force(vflag);
-  minimization->check_loads();
-  minimization->project(atom->f);
+  minimization.check_loads();
+  minimization.project(atom->f);
   min_projected = true;
 }
 
 void FixGearQuat::min_pre_exchange()
 {
-  minimization->fit();
+  minimization.fit();
 }
 
 void FixGearQuat::min_pre_neighbor()
 {
   pre_neighbor();
-  minimization->measure();
+  minimization.measure();
 }
 
 void FixGearQuat::min_pre_force(int /*vflag*/)
 {
-  minimization->fit_all();
+  minimization.fit_all();
 }
 
 /// Fix box/relax may request the pressure next.
 void FixGearQuat::min_post_force(int vflag)
 {
-  sites->gather_loads(atom->f, atom->torque);
+  sites.gather_loads(atom->f, atom->torque);
   tally_virial(vflag, atom->f);
   min_vflag = vflag;
 }
@@ -403,17 +385,17 @@ double FixGearQuat::min_energy(double *fextra)
 {
   fextra[0] = 0.0;
   if (min_projected)
-    sites->gather_loads(atom->f, nullptr);    // with the torques of atoms
+    sites.gather_loads(atom->f, nullptr);    // with the torques of atoms
   else
     min_post_force(min_vflag);
   min_projected = false;
-  minimization->project(atom->f);
+  minimization.project(atom->f);
   return 0.0;
 }
 
 void FixGearQuat::min_store()
 {
-  minimization->store();
+  minimization.store();
 }
 
 /// A single degree of freedom, which stays 0: with it LAMMPS calls min_energy() and min_store().
@@ -430,10 +412,10 @@ double FixGearQuat::max_alpha(double * /*hextra*/)
 
 void FixGearQuat::end_minimization()
 {
-  sites->place_velocities();
-  ownership->note_box();
+  sites.place_velocities();
+  ownership.note_box();
   show_bodies();
-  minimization->end();
+  minimization.end();
 }
 
 /* ----------------------------------------------------------------------
@@ -442,25 +424,20 @@ void FixGearQuat::end_minimization()
 
 void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
 {
-  if (!respa->outermost(ilevel)) return;
-  if (motion->begins_steps()) respa->sum_present();
-  begin_step(vflag, respa->forces(), respa->torques());
+  if (!respa.outermost(ilevel)) return;
+  if (motion.begins_steps()) respa.sum_present();
+  begin_step(vflag, respa.forces(), respa.torques());
 }
 
 void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
 {
-  respa->add(ilevel);
-  if (respa->outermost(ilevel)) end_step(respa->forces(), respa->torques());
+  respa.add(ilevel);
+  if (respa.outermost(ilevel)) end_step(respa.forces(), respa.torques());
 }
 
 /* ----------------------------------------------------------------------
    outputs
 ------------------------------------------------------------------------- */
-
-double FixGearQuat::compute_scalar()
-{
-  return sums->energy_correction() + motion->energy();
-}
 
 double FixGearQuat::compute_vector(int n)
 {
@@ -469,13 +446,8 @@ double FixGearQuat::compute_vector(int n)
                "Fix gear/quat {}: output reads element {} of a vector of {}; the fix has other "
                "keywords than when the output was defined: define it anew",
                id, n + 1, size_vector);
-  if (n >= Sums::ELEMENTS) return motion->element(n - Sums::ELEMENTS);
-  return sums->element(n, step->started ? step->present_integrator() : nullptr);
-}
-
-double FixGearQuat::compute_array(int i, int j)
-{
-  return table->global(i, j);
+  if (n >= Sums::ELEMENTS) return motion.element(n - Sums::ELEMENTS);
+  return sums.element(n, step.started ? step.present_integrator() : nullptr);
 }
 
 /// The command velocity create gives every atom its own velocity, of which bodies adopt the rigid
@@ -485,7 +457,7 @@ bigint FixGearQuat::dof(int tgroup)
   const bool in_run = update->whichflag != 0;
   if (!in_run && input->narg > 1 && strcmp(input->arg[1], "create") == 0) atoms_are_free = true;
   if (!in_run && atoms_are_free) return 0;
-  const Comparison found = ownership->count_atoms(group->bitmask[tgroup]);
+  const Comparison found = ownership.count_atoms(group->bitmask[tgroup]);
   if (found.divided && !(told_of_groups & group->bitmask[tgroup])) {
     told_of_groups |= group->bitmask[tgroup];
     if (comm->me == 0)
@@ -503,42 +475,32 @@ int FixGearQuat::modify_param(int narg, char **arg)
 {
   if (strcmp(arg[0], "extra/dof") != 0) return modify_like_rigid(lmp, narg, arg);
   if (narg < 2) utils::missing_cmd_args(FLERR, "fix_modify extra/dof", error);
-  args->thermostat.subtracted = utils::inumeric(FLERR, arg[1], false, lmp);
-  if (args->thermostat.subtracted < 0 || !ecouple_flag)
+  args.thermostat.subtracted = utils::inumeric(FLERR, arg[1], false, lmp);
+  if (args.thermostat.subtracted < 0 || !ecouple_flag)
     error->all(
         FLERR,
         "Fix gear/quat: fix_modify extra/dof is the number of degrees of freedom, 0 or more, "
         "that temp or a pressure does not count; keywords of neither are in the command, or "
         "the number is negative");
-  step->coupling->subtract(args->thermostat.subtracted);
+  step.coupling->subtract(args.thermostat.subtracted);
   return 2;
 }
 
 double FixGearQuat::memory_usage()
 {
-  return ownership->memory_usage() + sites->memory_usage() + table->memory_usage() +
-      respa->memory_usage();
+  return ownership.memory_usage() + sites.memory_usage() + table.memory_usage() +
+      respa.memory_usage();
 }
 
 /* ----------------------------------------------------------------------
    per-atom data, forwarded to the ownership of bodies
 ------------------------------------------------------------------------- */
 
-void FixGearQuat::grow_arrays(int nmax)
-{
-  ownership->grow_arrays(nmax);
-}
-
-void FixGearQuat::copy_arrays(int i, int j, int delflag)
-{
-  ownership->copy_arrays(i, j, delflag);
-}
-
 /// A new atom is outside all bodies until set_molecule() assigns it to one.
 void FixGearQuat::set_arrays(int i)
 {
-  ownership->set_arrays(i);
-  if (atom->mask[i] & groupbit) ownership->note_outside_atom(1);
+  ownership.set_arrays(i);
+  if (atom->mask[i] & groupbit) ownership.note_outside_atom(1);
 }
 
 /// Another fix has inserted a molecule of the template.
@@ -546,44 +508,9 @@ void FixGearQuat::set_molecule(int first, tagint /*before*/, int which, double *
                                double *velocity, double *quat)
 {
   for (int i = first; i < atom->nlocal; ++i)
-    if (atom->mask[i] & groupbit) ownership->note_outside_atom(-1);
+    if (atom->mask[i] & groupbit) ownership.note_outside_atom(-1);
   const bool known = which >= 0 && which < (int) stated.size();
-  add_molecule(lmp, *ownership, first, known ? &stated[which] : nullptr, {center, velocity, quat});
-}
-
-void *FixGearQuat::extract(const char *name, int &dim)
-{
-  return extracts->extract(name, dim);
-}
-
-int FixGearQuat::pack_exchange(int i, double *buf)
-{
-  return ownership->pack_exchange(i, buf);
-}
-
-int FixGearQuat::unpack_exchange(int nlocal, double *buf)
-{
-  return ownership->unpack_exchange(nlocal, buf);
-}
-
-int FixGearQuat::pack_forward_comm(int n, int *list, double *buf, int /*pbc_flag*/, int * /*pbc*/)
-{
-  return ownership->pack_forward(n, list, buf);
-}
-
-void FixGearQuat::unpack_forward_comm(int n, int first, double *buf)
-{
-  ownership->unpack_forward(n, first, buf);
-}
-
-int FixGearQuat::pack_reverse_comm(int n, int first, double *buf)
-{
-  return ownership->pack_reverse(n, first, buf);
-}
-
-void FixGearQuat::unpack_reverse_comm(int n, int *list, double *buf)
-{
-  ownership->unpack_reverse(n, list, buf);
+  add_molecule(lmp, ownership, first, known ? &stated[which] : nullptr, {center, velocity, quat});
 }
 
 /* ----------------------------------------------------------------------
@@ -592,46 +519,21 @@ void FixGearQuat::unpack_reverse_comm(int n, int *list, double *buf)
 
 void FixGearQuat::write_restart(FILE *fp)
 {
-  if (comm->me == 0) restarts->write(fp);
+  if (comm->me == 0) restarts.write(fp);
 }
 
 void FixGearQuat::write_restart_file(const char *file)
 {
   if (!met_atoms) return;    // the user may still change the atoms
   show_bodies();
-  restarts->write_bodies(fmt::format("{}.{}.gear_quat", file, id), array_local);
-}
-
-void FixGearQuat::restart(char *buf)
-{
-  restarts->read(buf);
+  restarts.write_bodies(fmt::format("{}.{}.gear_quat", file, id), array_local);
 }
 
 /// The bodies of a restart file continue if the command creates the same bodies.
 void FixGearQuat::resume()
 {
-  if (!restarts->was_read()) return;
-  const bool others_come = !args->mol.empty();    // insertions may come from outside of the group
-  met_atoms = restarts->resume(others_come ? groupbit : 0);
+  if (!restarts.was_read()) return;
+  const bool others_come = !args.mol.empty();    // insertions may come from outside of the group
+  met_atoms = restarts.resume(others_come ? groupbit : 0);
   if (!met_atoms) create_bodies();
-}
-
-int FixGearQuat::pack_restart(int i, double *buf)
-{
-  return restarts->pack(i, buf);
-}
-
-void FixGearQuat::unpack_restart(int /*nlocal*/, int nth)
-{
-  restarts->note_place(nth);
-}
-
-int FixGearQuat::size_restart(int i)
-{
-  return restarts->size(i);
-}
-
-int FixGearQuat::maxsize_restart()
-{
-  return restarts->max_size();
 }

@@ -20,29 +20,20 @@ FixStyle(gear/quat,FixGearQuat);
 
 #include "fix.h"
 
-#include <memory>
+#include "gear_quat_arguments.h"
+#include "gear_quat_driven_box.h"
+#include "gear_quat_fixes.h"
+#include "gear_quat_forces.h"
+#include "gear_quat_minimize.h"
+#include "gear_quat_motion.h"
+#include "gear_quat_outputs.h"
+#include "gear_quat_restart.h"
+#include "gear_quat_step.h"
+#include "gear_quat_template.h"
+
 #include <vector>
 
 namespace LAMMPS_NS {
-
-namespace GearQuat {
-  class Bodies;
-  class BodyTable;
-  class DrivenBox;
-  class Extract;
-  class Minimization;
-  class Motion;
-  class OtherFixes;
-  class Ownership;
-  class RespaForces;
-  class Restart;
-  class Sites;
-  class Step;
-  class Sums;
-  struct Arguments;
-  struct Fleet;
-  struct StatedMolecule;
-}    // namespace GearQuat
 
 class FixGearQuat : public Fix {
  public:
@@ -75,51 +66,66 @@ class FixGearQuat : public Fix {
   int min_dof() override;
   double max_alpha(double *) override;
 
-  double compute_scalar() override;
+  double compute_scalar() override { return sums.energy_correction() + motion.energy(); }
   double compute_vector(int) override;
-  double compute_array(int, int) override;
+  double compute_array(int i, int j) override { return table.global(i, j); }
   bigint dof(int) override;
   int modify_param(int, char **) override;
   double memory_usage() override;
 
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
   void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
-  int pack_forward_comm(int, int *, double *, int, int *) override;
-  void unpack_forward_comm(int, int, double *) override;
-  int pack_reverse_comm(int, int, double *) override;
-  void unpack_reverse_comm(int, int *, double *) override;
+  void set_molecule(int, tagint, int, double *, double *, double *) override;
+
+  // data of atoms
+
+  void grow_arrays(int nmax) override { ownership.grow_arrays(nmax); }
+  void copy_arrays(int i, int j, int flag) override { ownership.copy_arrays(i, j, flag); }
+  int pack_exchange(int i, double *buf) override { return ownership.pack_exchange(i, buf); }
+  int unpack_exchange(int i, double *buf) override { return ownership.unpack_exchange(i, buf); }
+  int pack_forward_comm(int n, int *list, double *buf, int, int *) override
+  {
+    return ownership.pack_forward(n, list, buf);
+  }
+  void unpack_forward_comm(int n, int i, double *buf) override
+  {
+    ownership.unpack_forward(n, i, buf);
+  }
+  int pack_reverse_comm(int n, int i, double *buf) override
+  {
+    return ownership.pack_reverse(n, i, buf);
+  }
+  void unpack_reverse_comm(int n, int *list, double *buf) override
+  {
+    ownership.unpack_reverse(n, list, buf);
+  }
 
   void write_restart(FILE *) override;
-  void restart(char *) override;
-  int pack_restart(int, double *) override;
-  void unpack_restart(int, int) override;
-  int size_restart(int) override;
-  int maxsize_restart() override;
-
+  void restart(char *buf) override { restarts.read(buf); }
+  int pack_restart(int i, double *buf) override { return restarts.pack(i, buf); }
+  void unpack_restart(int, int nth) override { restarts.note_place(nth); }
+  int size_restart(int i) override { return restarts.size(i); }
+  int maxsize_restart() override { return restarts.max_size(); }
   void write_restart_file(const char *) override;
-  void set_molecule(int, tagint, int, double *, double *, double *) override;
-  void *extract(const char *, int &) override;
+  void *extract(const char *name, int &dim) override { return extracts.extract(name, dim); }
 
  private:
-  // each object depends only on objects before it; if the constructor fails, all are freed
-  std::unique_ptr<GearQuat::Arguments> args;
-  std::unique_ptr<GearQuat::Fleet> fleet;
-  std::unique_ptr<GearQuat::Bodies> bodies;
-  std::unique_ptr<GearQuat::Ownership> ownership;
-  std::unique_ptr<GearQuat::Sites> sites;
-  std::unique_ptr<GearQuat::OtherFixes> other_fixes;
-  std::unique_ptr<GearQuat::Step> step;
-  std::unique_ptr<GearQuat::Motion> motion;
-  std::unique_ptr<GearQuat::DrivenBox> driven_box;
-  std::unique_ptr<GearQuat::Minimization> minimization;
-  std::unique_ptr<GearQuat::Restart> restarts;
-  std::unique_ptr<GearQuat::RespaForces> respa;
-  std::unique_ptr<GearQuat::BodyTable> table;
-  std::unique_ptr<GearQuat::Sums> sums;
-  std::unique_ptr<GearQuat::Extract> extracts;
+  // each object depends only on objects before it
+
+  GearQuat::Arguments args;
+  GearQuat::Fleet fleet;
+  GearQuat::Bodies bodies;
+  GearQuat::Ownership ownership;
+  GearQuat::Sites sites;
+  GearQuat::OtherFixes other_fixes;
+  GearQuat::Step step;
+  GearQuat::Motion motion;
+  GearQuat::DrivenBox driven_box;
+  GearQuat::Minimization minimization;
+  GearQuat::Restart restarts;
+  GearQuat::RespaForces respa;
+  GearQuat::BodyTable table;
+  GearQuat::Sums sums;
+  GearQuat::Extract extracts;
 
   std::vector<GearQuat::StatedMolecule> stated;    // one for each molecule of the template
 

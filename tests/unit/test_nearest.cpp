@@ -141,7 +141,7 @@ TEST(NearestTwist, DoesNotTurnALinearBodyAboutItsAxis)
 TEST(NearestTwist, OfAPointIsAWayAlone)
 {
   Mask idle = 0;
-  const Twist found = nearest_twist({1.0, {}, {}}, 0, {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, &idle);
+  const Twist found = nearest_twist({1.0, {}}, 0, {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, &idle);
   EXPECT_EQ(idle, torque_off(0) | torque_off(1) | torque_off(2));
   EXPECT_EQ(found.way[2], 3.0);
   EXPECT_EQ(found.turn[0], 0.0);
