@@ -106,13 +106,7 @@ void Arguments::parse_keywords(int narg, char **arg)
   if (is_on("preset", "paper")) take_preset();
   for (const auto &row : keyword_table())
     if (row.kind == Keyword::WORD && !given.count(row.name)) row.store(*this, {standard_word(row)});
-  check_conditions();
-  for (const char *keyword : {"passes", "project"})
-    if (scheme.momentum() && given.count(keyword))
-      error->all(FLERR,
-                 "Fix gear/quat keyword {} requires formulation second or first: formulation "
-                 "momentum neither repeats corrections nor projects quaternions",
-                 keyword);
+  check_rules();
   check_ranges();
   if (is_on("tolerance", "")) check_control();
   check_pressure();
@@ -120,36 +114,21 @@ void Arguments::parse_keywords(int narg, char **arg)
   if (!infile.empty()) reinit = false;    // values in a file are not recomputed from the atoms
 }
 
-/// Adds the keywords of the test cases of the paper, except keywords that are given and keywords
-/// that conflict with them.
+/// Adds the keywords of the test cases of the paper, except keywords that are given.
 void Arguments::take_preset()
 {
   using Words = std::vector<std::pair<std::string, std::string>>;
-  const bool first = is_on("formulation", "first");
-  if (given.count("tolerance"))
-    error->all(FLERR,
-               "Fix gear/quat preset paper: the paper has constant steps; leave out tolerance");
-  if (given.count("formulation") && is_on("formulation", "momentum"))
-    error->all(FLERR, "Fix gear/quat preset paper: the paper has formulations first and second");
-  Words words = {{"formulation", "second"},
-                 {"corrector", "gear"},
-                 {"passes", "1"},
-                 {"start", "zero"},
-                 {"project", "no"}};
-  if (first)
+  Words words = {{"formulation", "second"}, {"passes", "1"}, {"start", "zero"}, {"project", "no"}};
+  if (is_on("formulation", "first"))
     words.insert(words.end(), {{"values", "5"}, {"momentum", "predicted"}});
   else
     words.insert(words.end(), {{"values", "6"}, {"c0", "velocity"}});
   for (auto &[name, word] : words) {
-    const Keyword &row = find_keyword(lmp, name);
-    const auto holds = [this](const Keyword::Condition &one) {
-      return is_on(one.keyword, one.value);
-    };
-    if (given.count(name) || !std::all_of(row.needs.begin(), row.needs.end(), holds)) continue;
+    if (given.count(name)) continue;
     char *pair[] = {name.data(), word.data()};
     KeywordValue value;
-    row.read(lmp, 2, pair, value);
-    row.store(*this, value);
+    find_keyword(lmp, name).read(lmp, 2, pair, value);
+    find_keyword(lmp, name).store(*this, value);
     given[name] = value;
   }
 }
@@ -166,43 +145,39 @@ bool Arguments::is_on(const std::string &keyword, const std::string &value) cons
   return !present.empty() && !(row.kind == Keyword::WORD && present == "none");
 }
 
-/// The default of a WORD in this command.
+/// The default of a WORD in this command; any other keyword that is not given has no value.
 const std::string &Arguments::standard_word(const Keyword &row) const
 {
+  static const std::string NOTHING;
   for (const auto &other : row.standards)
     if (is_on(other.keyword, other.value)) return other.word;
-  return row.standard;
+  return row.kind == Keyword::WORD ? row.words.front() : NOTHING;
 }
 
-/// Checks requirements and conflicts between keywords.
-void Arguments::check_conditions() const
+void Arguments::check_rules() const
 {
-  const auto because = [](const Keyword::Condition &condition) {
-    return condition.reason.empty() ? "" : ": " + condition.reason;
-  };
-  for (const auto &row : keyword_table()) {
-    if (!given.count(row.name) || !is_on(row.name, "")) continue;
-    std::string user = row.name, lacking,
-                reasons;    // all errors at once: fixing one should not lead to the next
-    for (const auto &condition : row.needs) {
-      if (!is_on(row.name, condition.only_for) || is_on(condition.keyword, condition.value))
-        continue;
-      if (!condition.only_for.empty()) user = row.name + std::string(" ") + condition.only_for;
-      lacking += (lacking.empty() ? "" : " and ") +
-          (condition.value.empty() ? "keyword " + condition.keyword
-                                   : condition.keyword + " " + condition.value);
-      reasons += because(condition);
+  for (const auto &rule : keyword_rules())
+    for (const auto &name : rule.names) {
+      if (!given.count(name) || !is_on(name, rule.own)) continue;
+      const std::string user = rule.own.empty() ? name : name + " " + rule.own;
+      const std::string because = rule.reason.empty() ? "" : ": " + rule.reason;
+      const auto holds = [&](const std::string &other) {
+        if (rule.values.empty()) return is_on(other, "");
+        return std::any_of(rule.values.begin(), rule.values.end(), [&](const std::string &value) {
+          return is_on(other, value);
+        });
+      };
+      const auto &others = rule.others;
+      if (rule.kind == Rule::REQUIRE && !std::any_of(others.begin(), others.end(), holds))
+        error->all(FLERR, "Fix gear/quat keyword {} requires {}{}", user,
+                   rule.values.empty() ? "keyword " + alternatives(others)
+                                       : others.front() + " " + alternatives(rule.values),
+                   because);
+      for (const auto &other : others)
+        if (rule.kind == Rule::EXCLUDE && other != name && given.count(other) && holds(other))
+          error->all(FLERR, "Fix gear/quat keyword {} cannot be used with {}{}", user, other,
+                     because);
     }
-    if (!lacking.empty())
-      error->all(FLERR, "Fix gear/quat keyword {} requires {}{}", user, lacking, reasons);
-    for (const auto &condition : row.excludes)
-      if (is_on(row.name, condition.value) && given.count(condition.keyword) &&
-          is_on(condition.keyword, ""))
-        error->all(FLERR, "Fix gear/quat keyword {} cannot be used with {}{}",
-                   condition.value.empty() ? row.name
-                                           : row.name + std::string(" ") + condition.value,
-                   condition.keyword, because(condition));
-  }
 }
 
 /// Stores integers, including defaults, and ends the run if one is outside of its range.
@@ -257,33 +232,14 @@ void Arguments::check_control()
 void Arguments::check_pressure()
 {
   PressureWords &p = pressure;
-  if (!p.any()) {
-    for (const char *keyword : {"couple", "pchain", "ptemp", "fixedpoint", "flip", "dilate"})
-      if (given.count(keyword) && is_on(keyword, ""))
+  if (!p.any()) return;
+  if (domain->dimension == 2) {
+    for (const char *keyword : {"z", "xz", "yz"})
+      if (given.count(keyword))
         error->all(FLERR,
-                   "Fix gear/quat keyword {} requires a keyword of constant pressure, such as iso, "
-                   "aniso, tri, x, y or z",
-                   keyword);
-    return;
+                   "Fix gear/quat: in two dimensions there is no pressure component z, xz or yz");
+    p.on[2] = p.on[3] = p.on[4] = false;
   }
-  std::string whole;
-  for (const char *keyword : {"iso", "aniso", "tri", "x", "y", "z", "xy", "xz", "yz"}) {
-    if (!given.count(keyword)) continue;
-    if (!whole.empty())
-      error->all(FLERR, "Fix gear/quat keyword {} cannot be used with {}: it sets all directions",
-                 whole, keyword);
-    if (std::string(keyword).size() > 2) whole = keyword;
-  }
-  if (whole == "iso" && is_on("couple", ""))
-    error->all(FLERR, "Fix gear/quat keyword iso cannot be used with couple: it couples all edges");
-  if (domain->dimension == 2)
-    for (const int along_z : {2, 3, 4}) {
-      if (whole.empty() && p.on[along_z])
-        error->all(FLERR,
-                   "Fix gear/quat: in two dimensions there is no pressure component z, xz or "
-                   "yz");
-      p.on[along_z] = false;
-    }
   if (domain->dimension == 2 && p.tied[1] == 1 && p.tied[2] != 2)    // xyz is equivalent to xy
     error->all(FLERR,
                "Fix gear/quat couple: in two dimensions there is no edge along z; use couple xy");
@@ -319,8 +275,6 @@ void Arguments::check_directions() const
                  "Fix gear/quat: tilts of the box are free only if all components of the pressure "
                  "are given, which are {}; use keyword tri, or add those that are missing",
                  flat ? "x, y and xy" : "x, y, z, xy, xz and yz");
-  if (is_on("couple", ""))
-    error->all(FLERR, "Fix gear/quat: keyword couple cannot be used with tri, xy, xz and yz");
 }
 
 /// Coupled directions must have the same numbers.
@@ -354,7 +308,7 @@ std::string Arguments::words_of_control() const
 std::string Arguments::words_of_pressure() const
 {
   std::string text;
-  for (const char *keyword : {"iso", "aniso", "tri", "x", "y", "z", "xy", "xz", "yz"}) {
+  for (const auto &keyword : pressure_keywords()) {
     if (!given.count(keyword)) continue;
     const auto &numbers = given.at(keyword).numbers;
     text += fmt::format("{} {:g} {:g} {:g}, ", keyword, numbers[0], numbers[1], numbers[2]);

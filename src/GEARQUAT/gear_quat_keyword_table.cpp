@@ -11,189 +11,192 @@ using namespace GearQuat;
 static constexpr char INTEGRATION[] = "integration", STEP[] = "step", BODIES[] = "bodies",
                       PHYSICS[] = "physics", OUTPUT[] = "output";
 
-static constexpr char HELD[] =
-    "it acts on all momenta; define a second fix for bodies whose motion is restricted";
-static constexpr char ONE_TEMPERATURE[] =
-    "both keep the kinetic energy of the bodies; leave out one of the two";
-static constexpr char MOVING_BOX[] = "with a moving box it is not possible yet";
-static constexpr char REMEMBERED[] =
-    "with a tolerance, bodies remember their last loads, as many as reduce the error";
-static constexpr char RENUMBERED[] = "the numbers of bodies change when bodies are inserted";
-
-using Value = KeywordValue;
-
-/* ----------------------------------------------------------------------
-   the table; the reasons for the defaults are in doc/decisions.md
-------------------------------------------------------------------------- */
-
-/// A keyword that makes components of the pressure constant.
-static Keyword pressure(const char *name, const char *meaning, Keyword::Store store)
-{
-  Keyword row(name, PHYSICS, meaning, store);
-  row.numbers({"Pstart", "Pstop", "Pdamp"}, 2)
-      .cannot_go_with({"isokinetic", "", "constant kinetic energy needs a constant box"});
-  for (const char *other : {"mol", "force", "torque"}) row.cannot_go_with({other, "", MOVING_BOX});
-  return row;
-}
+using A = Arguments;
+using V = KeywordValue;
+using K = Keyword;
 
 // clang-format off
 
-static const std::vector<Keyword> TABLE = {
-  Keyword("formulation", INTEGRATION, "which equations of motion are integrated",
-          [](Arguments &a, const Value &v) {
-            a.scheme.formulation = v.is("first") ? Formulation::FIRST
-                : v.is("second")                 ? Formulation::SECOND
-                                                 : Formulation::MOMENTUM;
-          }).word({"momentum", "second", "first"}).cannot_go_with({"tolerance", "", REMEMBERED}),
-  Keyword("values", INTEGRATION, "how many values a history keeps of each function",
-          [](Arguments &a, const Value &v) { a.scheme.rows = v.integer; })
-      .integer({{SECOND_FEWEST, SECOND_MOST, 9, 8}, {FIRST_FEWEST, FIRST_MOST, 8, 6}})
-      .or_auto().cannot_go_with({"tolerance", "", REMEMBERED}),
-  Keyword("corrector", INTEGRATION, "which coefficients correct a history",
-          [](Arguments &a, const Value &v) { a.scheme.tuned = v.is("tuned"); })
-      .word({"tuned", "gear"})
-      .standard_with("formulation", "second", "gear").standard_with("formulation", "first", "gear")
-      .requires_also({"formulation", "momentum", "the others have Gear's coefficients", "tuned"})
-      .cannot_go_with({"tolerance", "", REMEMBERED}),
-  Keyword("passes", INTEGRATION, "how many corrections a step makes with the same forces",
-          [](Arguments &a, const Value &v) { a.scheme.passes = v.integer; })
-      .integer({{1, 2, 2}}),
-  Keyword("compensate", INTEGRATION, "whether sums are compensated for round-off",
-          [](Arguments &a, const Value &v) { a.scheme.compensate = v.is("yes"); })
-      .word({"no", "yes"}).standard_with("tolerance", "", "yes"),
-  Keyword("start", INTEGRATION, "which derivatives a history begins with",
-          [](Arguments &a, const Value &v) {
-            a.start = v.is("zero") ? Arguments::Start::ZERO : Arguments::Start::BOOTSTRAP;
-          }).word({"bootstrap", "zero"}).cannot_go_with({"tolerance", "", REMEMBERED}),
-  Keyword("project", INTEGRATION, "whether quaternions are projected to unit length",
-          [](Arguments &a, const Value &v) { a.scheme.project = v.is("yes"); })
-      .word({"yes", "no"}),
-  Keyword("tolerance", STEP, "the largest error of a step, to which the time step is adapted",
-          [](Arguments &a, const Value &v) {
-            a.control.eps = v.number * v.unit;
-            a.control.energy = v.measure == "energy";
-          }).number({"length", "energy"}),
-  Keyword("dtmin", STEP, "the time step does not become shorter",
-          [](Arguments &a, const Value &v) { a.control.shortest = v.number; })
-      .number().requires_also({"tolerance", "", ""}),
-  Keyword("dtmax", STEP, "the time step does not become longer",
-          [](Arguments &a, const Value &v) { a.control.longest = v.number; })
-      .number().requires_also({"tolerance", "", ""}),
-  Keyword("every/time", STEP, "the interval of time at whose multiples steps end",
-          [](Arguments &a, const Value &v) { a.every_time = v.number; })
-      .number().requires_also({"tolerance", "", ""}),
-  Keyword("infile", BODIES, "the file that states bodies",
-          [](Arguments &a, const Value &v) { a.infile = v.text; })
-      .follows(Keyword::NAME, {"filename"}),
-  Keyword("reinit", BODIES, "whether bodies adopt changes of their atoms between runs",
-          [](Arguments &a, const Value &v) { a.reinit = v.is("yes"); })
-      .word({"yes", "no"})
-      .cannot_go_with({"infile", "yes", "the file states the bodies once and for all"}),
-  Keyword("mol", BODIES, "the template of bodies that other fixes insert",
-          [](Arguments &a, const Value &v) { a.mol = v.text; })
-      .follows(Keyword::NAME, {"template-ID"}).requires_also({"bodystyle", "molecule", ""})
-      .cannot_go_with({"isokinetic", "", "inserted bodies add kinetic energy"}),
-  Keyword("force", PHYSICS, "which components of the total force act on bodies M",
-          [](Arguments &a, const Value &v) { a.masks.push_back(v.mask); })
-      .follows(Keyword::MASK, {"M", "xflag", "yflag", "zflag"})
-      .cannot_go_with({"mol", "", RENUMBERED}).cannot_go_with({"isokinetic", "", HELD}),
-  Keyword("torque", PHYSICS, "which components of the total torque act on bodies M",
-          [](Arguments &a, const Value &v) { a.masks.push_back(v.mask); })
-      .follows(Keyword::MASK, {"M", "xflag", "yflag", "zflag"})
-      .cannot_go_with({"mol", "", RENUMBERED}).cannot_go_with({"isokinetic", "", HELD}),
-  Keyword("isokinetic", PHYSICS, "which kinetic energy of all bodies is kept constant",
-          [](Arguments &a, const Value &v) {
-            a.isokinetic = v.is("total") ? Isokinetic::TOTAL
-                : v.is("separate")       ? Isokinetic::SEPARATE
-                                         : Isokinetic::NONE;
-          }).word({"none", "total", "separate"})
-      .requires_also({"formulation", "first", "its constraint is part of equations of the first "
-                      "order"}),
-  Keyword("rescale", PHYSICS, "whether momenta are scaled to exactly that energy",
-          [](Arguments &a, const Value &v) { a.rescale = v.is("yes"); })
-      .word({"yes", "no"}).requires_also({"isokinetic", "", ""}),
-  Keyword("temp", PHYSICS, "the temperature of all bodies, at the beginning and at the end of a run",
-          [](Arguments &a, const Value &v) {
-            a.thermostat.start = v.numbers[0];
-            a.thermostat.stop = v.numbers[1];
-            a.thermostat.damp = v.numbers[2];
-          }).follows(Keyword::NUMBERS, {"Tstart", "Tstop", "Tdamp"})
-      .cannot_go_with({"isokinetic", "", ONE_TEMPERATURE}),
-  Keyword("tchain", PHYSICS, "how many variables a thermostat has",
-          [](Arguments &a, const Value &v) { a.thermostat.length = v.integer; })
-      .integer({{1, Chain::LONGEST, 3}}).requires_also({"temp", "", ""}),
-  Keyword("thermostat", PHYSICS, "whether translation and rotation have one thermostat each",
-          [](Arguments &a, const Value &v) { a.thermostat.separate = v.is("separate"); })
-      .word({"total", "separate"}).requires_also({"temp", "", ""}),
-  pressure("iso", "the pressure, which changes all edges of the box by the same factor",
-           [](Arguments &a, const Value &v) {
-             a.pressure.set_all(v.numbers);
-             std::fill_n(a.pressure.tied, 3, 0);
-           }),
-  pressure("aniso", "the pressure along each edge of the box, and each edge changes independently",
-           [](Arguments &a, const Value &v) { a.pressure.set_all(v.numbers); }),
-  pressure("tri", "the pressure along each edge of a triclinic box, without shear stress",
-           [](Arguments &a, const Value &v) {
-             a.pressure.set_all(v.numbers);
-             for (int k = 3; k < 6; ++k) a.pressure.set(k, {0.0, 0.0, v.numbers[2]});
-           }),
-  pressure("x", "the pressure along x, which changes that edge of the box",
-           [](Arguments &a, const Value &v) { a.pressure.set(0, v.numbers); }),
-  pressure("y", "the pressure along y, which changes that edge of the box",
-           [](Arguments &a, const Value &v) { a.pressure.set(1, v.numbers); }),
-  pressure("z", "the pressure along z, which changes that edge of the box",
-           [](Arguments &a, const Value &v) { a.pressure.set(2, v.numbers); }),
-  pressure("xy", "the shear component xy of the pressure, which changes that tilt",
-           [](Arguments &a, const Value &v) { a.pressure.set(5, v.numbers); }),
-  pressure("xz", "the shear component xz of the pressure, which changes that tilt",
-           [](Arguments &a, const Value &v) { a.pressure.set(4, v.numbers); }),
-  pressure("yz", "the shear component yz of the pressure, which changes that tilt",
-           [](Arguments &a, const Value &v) { a.pressure.set(3, v.numbers); }),
-  Keyword("couple", PHYSICS, "which edges of the box change by the same factor, due to their "
-                             "mean pressure",
-          [](Arguments &a, const Value &v) {
-            int *tied = a.pressure.tied;
-            if (v.is("xyz")) tied[0] = tied[1] = tied[2] = 0;
-            if (v.is("xy")) tied[1] = 0;
-            if (v.is("yz")) tied[2] = 1;
-            if (v.is("xz")) tied[2] = 0;
-          }).word({"none", "xyz", "xy", "yz", "xz"}),
-  Keyword("pchain", PHYSICS, "how many variables the thermostat of the box has",
-          [](Arguments &a, const Value &v) { a.pressure.length = v.integer; })
-      .integer({{0, Chain::LONGEST, 3}}),
-  Keyword("ptemp", PHYSICS, "the temperature that determines the mass of the box, without temp",
-          [](Arguments &a, const Value &v) { a.pressure.temperature = v.number; })
-      .number().cannot_go_with({"temp", "", "the temperature of temp determines the mass of the "
-                                            "box"}),
-  Keyword("flip", PHYSICS, "whether a box that is tilted by more than half a period is replaced",
-          [](Arguments &a, const Value &v) { a.pressure.flip = v.is("yes"); }).word({"yes", "no"}),
-  Keyword("dilate", PHYSICS, "the atoms that follow the box: all, because all are in bodies",
-          [](Arguments &, const Value &) {}).word({"all"}),
-  Keyword("fixedpoint", PHYSICS, "the point of the box that does not move",
-          [](Arguments &a, const Value &v) { a.pressure.fixed = v.numbers; })
-      .numbers({"x", "y", "z"}, 3),
-  Keyword("report", OUTPUT, "what the log says about the scene",
-          [](Arguments &a, const Value &v) {
-            a.report = v.is("no") ? Arguments::Report::NO
-                : v.is("long")    ? Arguments::Report::LONG
-                                  : Arguments::Report::SHORT;
-          }).word({"no", "short", "long"}, "short"),
-  Keyword("preset", INTEGRATION, "whose choices apply to keywords that are not given",
-          [](Arguments &, const Value &) {}).word({"none", "paper"}),
-  Keyword("c0", INTEGRATION, "which right-hand sides the first coefficient belongs to",
-          [](Arguments &a, const Value &v) { a.scheme.velocity_c0 = v.is("velocity"); })
-      .word({"position", "velocity"}).requires_also({"formulation", "second", ""}),
-  Keyword("omega", INTEGRATION, "which angular velocity corrects the quaternion",
-          [](Arguments &a, const Value &v) { a.scheme.predicted_omega = v.is("predicted"); })
-      .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""}),
-  Keyword("momentum", INTEGRATION, "which momentum corrects the position",
-          [](Arguments &a, const Value &v) { a.scheme.predicted_momentum = v.is("predicted"); })
-      .word({"corrected", "predicted"}).requires_also({"formulation", "first", ""}),
-};
-
-// clang-format on
-
+/// The reasons for the defaults are in doc/decisions.md.
 const std::vector<Keyword> &GearQuat::keyword_table()
 {
-  return TABLE;
+  static const std::vector<std::string> FLAGS = {"M", "xflag", "yflag", "zflag"};
+  static const std::vector<std::string> TEMPERATURES = {"Tstart", "Tstop", "Tdamp"};
+  static const std::vector<std::string> PRESSURES = {"Pstart", "Pstop", "Pdamp"};
+  static const auto pressure = [](const char *name, void (*store)(A &, const V &), const char *meaning) {
+    return K{name, PHYSICS, K::NUMBERS, PRESSURES, store, meaning, {}, {}, 2};
+  };
+  static const std::vector<Keyword> table = {
+    {"formulation", INTEGRATION, K::WORD, {"momentum", "second", "first"},
+     [](A &a, const V &v) {
+       a.scheme.formulation = v.is("first") ? Formulation::FIRST
+           : v.is("second")                 ? Formulation::SECOND
+                                            : Formulation::MOMENTUM;
+     }, "which equations of motion are integrated"},
+    {"values", INTEGRATION, K::INTEGER, {},
+     [](A &a, const V &v) { a.scheme.rows = v.integer; },
+     "how many values a history keeps of each function",
+     {{SECOND_FEWEST, SECOND_MOST, 9, 8}, {FIRST_FEWEST, FIRST_MOST, 8, 6}}, {}, 0, true},
+    {"corrector", INTEGRATION, K::WORD, {"tuned", "gear"},
+     [](A &a, const V &v) { a.scheme.tuned = v.is("tuned"); },
+     "which coefficients correct a history", {},
+     {{"formulation", "second", "gear"}, {"formulation", "first", "gear"}}},
+    {"passes", INTEGRATION, K::INTEGER, {},
+     [](A &a, const V &v) { a.scheme.passes = v.integer; },
+     "how many corrections a step makes with the same forces", {{1, 2, 2}}},
+    {"compensate", INTEGRATION, K::WORD, {"no", "yes"},
+     [](A &a, const V &v) { a.scheme.compensate = v.is("yes"); },
+     "whether sums are compensated for round-off", {}, {{"tolerance", "", "yes"}}},
+    {"start", INTEGRATION, K::WORD, {"bootstrap", "zero"},
+     [](A &a, const V &v) { a.start = v.is("zero") ? A::Start::ZERO : A::Start::BOOTSTRAP; },
+     "which derivatives a history begins with"},
+    {"project", INTEGRATION, K::WORD, {"yes", "no"},
+     [](A &a, const V &v) { a.scheme.project = v.is("yes"); },
+     "whether quaternions are projected to unit length"},
+    {"tolerance", STEP, K::NUMBER, {"length", "energy"},
+     [](A &a, const V &v) {
+       a.control.eps = v.number * v.unit;
+       a.control.energy = v.measure == "energy";
+     }, "the largest error of a step, to which the time step is adapted"},
+    {"dtmin", STEP, K::NUMBER, {}, [](A &a, const V &v) { a.control.shortest = v.number; },
+     "the time step does not become shorter"},
+    {"dtmax", STEP, K::NUMBER, {}, [](A &a, const V &v) { a.control.longest = v.number; },
+     "the time step does not become longer"},
+    {"every/time", STEP, K::NUMBER, {}, [](A &a, const V &v) { a.every_time = v.number; },
+     "the interval of time at whose multiples steps end"},
+    {"infile", BODIES, K::NAME, {"filename"}, [](A &a, const V &v) { a.infile = v.text; },
+     "the file that states bodies"},
+    {"reinit", BODIES, K::WORD, {"yes", "no"}, [](A &a, const V &v) { a.reinit = v.is("yes"); },
+     "whether bodies adopt changes of their atoms between runs"},
+    {"mol", BODIES, K::NAME, {"template-ID"}, [](A &a, const V &v) { a.mol = v.text; },
+     "the template of bodies that other fixes insert"},
+    {"force", PHYSICS, K::MASK, FLAGS, [](A &a, const V &v) { a.masks.push_back(v.mask); },
+     "which components of the total force act on bodies M"},
+    {"torque", PHYSICS, K::MASK, FLAGS, [](A &a, const V &v) { a.masks.push_back(v.mask); },
+     "which components of the total torque act on bodies M"},
+    {"isokinetic", PHYSICS, K::WORD, {"none", "total", "separate"},
+     [](A &a, const V &v) {
+       a.isokinetic = v.is("total") ? Isokinetic::TOTAL
+           : v.is("separate")       ? Isokinetic::SEPARATE
+                                    : Isokinetic::NONE;
+     }, "which kinetic energy of all bodies is kept constant"},
+    {"rescale", PHYSICS, K::WORD, {"yes", "no"}, [](A &a, const V &v) { a.rescale = v.is("yes"); },
+     "whether momenta are scaled to exactly that energy"},
+    {"temp", PHYSICS, K::NUMBERS, TEMPERATURES,
+     [](A &a, const V &v) {
+       a.thermostat.start = v.numbers[0];
+       a.thermostat.stop = v.numbers[1];
+       a.thermostat.damp = v.numbers[2];
+     }, "the temperature of all bodies, at the beginning and at the end of a run"},
+    {"tchain", PHYSICS, K::INTEGER, {}, [](A &a, const V &v) { a.thermostat.length = v.integer; },
+     "how many variables a thermostat has", {{1, Chain::LONGEST, 3}}},
+    {"thermostat", PHYSICS, K::WORD, {"total", "separate"},
+     [](A &a, const V &v) { a.thermostat.separate = v.is("separate"); },
+     "whether translation and rotation have one thermostat each"},
+    pressure("iso",
+             [](A &a, const V &v) {
+               a.pressure.set_all(v.numbers);
+               std::fill_n(a.pressure.tied, 3, 0);
+             }, "the pressure, which changes all edges of the box by the same factor"),
+    pressure("aniso", [](A &a, const V &v) { a.pressure.set_all(v.numbers); },
+             "the pressure along each edge of the box, and each edge changes independently"),
+    pressure("tri",
+             [](A &a, const V &v) {
+               a.pressure.set_all(v.numbers);
+               for (int k = 3; k < 6; ++k) a.pressure.set(k, {0.0, 0.0, v.numbers[2]});
+             }, "the pressure along each edge of a triclinic box, without shear stress"),
+    pressure("x", [](A &a, const V &v) { a.pressure.set(0, v.numbers); },
+             "the pressure along x, which changes that edge of the box"),
+    pressure("y", [](A &a, const V &v) { a.pressure.set(1, v.numbers); },
+             "the pressure along y, which changes that edge of the box"),
+    pressure("z", [](A &a, const V &v) { a.pressure.set(2, v.numbers); },
+             "the pressure along z, which changes that edge of the box"),
+    pressure("xy", [](A &a, const V &v) { a.pressure.set(5, v.numbers); },
+             "the shear component xy of the pressure, which changes that tilt"),
+    pressure("xz", [](A &a, const V &v) { a.pressure.set(4, v.numbers); },
+             "the shear component xz of the pressure, which changes that tilt"),
+    pressure("yz", [](A &a, const V &v) { a.pressure.set(3, v.numbers); },
+             "the shear component yz of the pressure, which changes that tilt"),
+    {"couple", PHYSICS, K::WORD, {"none", "xyz", "xy", "yz", "xz"},
+     [](A &a, const V &v) {
+       int *tied = a.pressure.tied;
+       if (v.is("xyz")) tied[0] = tied[1] = tied[2] = 0;
+       if (v.is("xy")) tied[1] = 0;
+       if (v.is("yz")) tied[2] = 1;
+       if (v.is("xz")) tied[2] = 0;
+     }, "which edges of the box change by the same factor, due to their mean pressure"},
+    {"pchain", PHYSICS, K::INTEGER, {}, [](A &a, const V &v) { a.pressure.length = v.integer; },
+     "how many variables the thermostat of the box has", {{0, Chain::LONGEST, 3}}},
+    {"ptemp", PHYSICS, K::NUMBER, {}, [](A &a, const V &v) { a.pressure.temperature = v.number; },
+     "the temperature that determines the mass of the box, without temp"},
+    {"flip", PHYSICS, K::WORD, {"yes", "no"}, [](A &a, const V &v) { a.pressure.flip = v.is("yes"); },
+     "whether a box that is tilted by more than half a period is replaced"},
+    {"dilate", PHYSICS, K::WORD, {"all"}, [](A &, const V &) {},
+     "the atoms that follow the box: all, because all are in bodies"},
+    {"fixedpoint", PHYSICS, K::NUMBERS, {"x", "y", "z"},
+     [](A &a, const V &v) { a.pressure.fixed = v.numbers; },
+     "the point of the box that does not move", {}, {}, 3},
+    {"report", OUTPUT, K::WORD, {"short", "no", "long"},
+     [](A &a, const V &v) {
+       a.report = v.is("no") ? A::Report::NO : v.is("long") ? A::Report::LONG : A::Report::SHORT;
+     }, "what the log says about the scene"},
+    {"preset", INTEGRATION, K::WORD, {"none", "paper"}, [](A &, const V &) {},
+     "whose choices apply to keywords that are not given"},
+    {"c0", INTEGRATION, K::WORD, {"position", "velocity"},
+     [](A &a, const V &v) { a.scheme.velocity_c0 = v.is("velocity"); },
+     "which right-hand sides the first coefficient belongs to"},
+    {"omega", INTEGRATION, K::WORD, {"corrected", "predicted"},
+     [](A &a, const V &v) { a.scheme.predicted_omega = v.is("predicted"); },
+     "which angular velocity corrects the quaternion"},
+    {"momentum", INTEGRATION, K::WORD, {"corrected", "predicted"},
+     [](A &a, const V &v) { a.scheme.predicted_momentum = v.is("predicted"); },
+     "which momentum corrects the position"},
+  };
+  return table;
 }
+
+const std::vector<std::string> &GearQuat::pressure_keywords()
+{
+  static const std::vector<std::string> names = {"iso", "aniso", "tri", "x", "y", "z", "xy", "xz", "yz"};
+  return names;
+}
+
+const std::vector<Rule> &GearQuat::keyword_rules()
+{
+  using R = Rule;
+  static const std::vector<std::string> PRESSURE = pressure_keywords();
+  static const std::vector<Rule> rules = {
+    {{"preset"}, "paper", R::EXCLUDE, {"tolerance"}, {}, "the paper has constant steps"},
+    {{"preset"}, "paper", R::REQUIRE, {"formulation"}, {"second", "first"}, "the paper has these"},
+    {{"formulation", "values", "corrector", "start"}, "", R::EXCLUDE, {"tolerance"}, {},
+     "with a tolerance, bodies remember their last loads, as many as reduce the error"},
+    {{"corrector"}, "tuned", R::REQUIRE, {"formulation"}, {"momentum"}, "the others have Gear's coefficients"},
+    {{"passes", "project"}, "", R::REQUIRE, {"formulation"}, {"second", "first"},
+     "formulation momentum neither repeats corrections nor projects quaternions"},
+    {{"c0"}, "", R::REQUIRE, {"formulation"}, {"second"}, ""},
+    {{"omega", "momentum"}, "", R::REQUIRE, {"formulation"}, {"first"}, ""},
+    {{"dtmin", "dtmax", "every/time"}, "", R::REQUIRE, {"tolerance"}, {}, ""},
+    {{"reinit"}, "yes", R::EXCLUDE, {"infile"}, {}, "the file states the bodies once and for all"},
+    {{"mol"}, "", R::REQUIRE, {"bodystyle"}, {"molecule"}, ""},
+    {{"mol"}, "", R::EXCLUDE, {"isokinetic"}, {}, "inserted bodies add kinetic energy"},
+    {{"force", "torque"}, "", R::EXCLUDE, {"mol"}, {}, "the numbers of bodies change when bodies are inserted"},
+    {{"force", "torque"}, "", R::EXCLUDE, {"isokinetic"}, {},
+     "it acts on all momenta; define a second fix for bodies whose motion is restricted"},
+    {{"isokinetic"}, "", R::REQUIRE, {"formulation"}, {"first"},
+     "its constraint is part of equations of the first order"},
+    {{"rescale"}, "", R::REQUIRE, {"isokinetic"}, {}, ""},
+    {{"temp"}, "", R::EXCLUDE, {"isokinetic"}, {},
+     "both keep the kinetic energy of the bodies; leave out one of the two"},
+    {{"tchain", "thermostat"}, "", R::REQUIRE, {"temp"}, {}, ""},
+    {PRESSURE, "", R::EXCLUDE, {"isokinetic"}, {}, "constant kinetic energy needs a constant box"},
+    {PRESSURE, "", R::EXCLUDE, {"mol", "force", "torque"}, {}, "with a moving box it is not possible yet"},
+    {{"iso", "aniso", "tri"}, "", R::EXCLUDE, PRESSURE, {}, "it sets all directions"},
+    {{"iso"}, "", R::EXCLUDE, {"couple"}, {}, "it couples all edges"},
+    {{"tri", "xy", "xz", "yz"}, "", R::EXCLUDE, {"couple"}, {}, "edges of a box that shears change independently"},
+    {{"couple", "pchain", "ptemp", "flip", "dilate", "fixedpoint"}, "", R::REQUIRE, PRESSURE, {}, ""},
+    {{"ptemp"}, "", R::EXCLUDE, {"temp"}, {}, "the temperature of temp determines the mass of the box"},
+  };
+  return rules;
+}
+
+// clang-format on

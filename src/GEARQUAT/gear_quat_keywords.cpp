@@ -3,9 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-#include "gear_quat_arguments.h"
-
-#include "gear_quat_tuned.h"
+#include "gear_quat_keywords.h"
 
 #include "error.h"
 #include "lammps.h"
@@ -73,6 +71,11 @@ int GearQuat::modify_like_rigid(LAMMPS *lmp, int narg, char **arg)
    rows of the table
 ------------------------------------------------------------------------- */
 
+bool Rule::is_for(const std::string &name) const
+{
+  return std::count(names.begin(), names.end(), name) > 0;
+}
+
 const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name, const Keyword *before)
 {
   for (const auto &row : keyword_table())
@@ -95,27 +98,25 @@ template <typename Text> static std::string of_formulations(const Keyword &row, 
   return text(row.range(false)) + " (momentum, second), " + text(row.range(true)) + " (first)";
 }
 
-std::string Keyword::required() const
+std::string GearQuat::alternatives(const std::vector<std::string> &words)
 {
-  if (kind == NUMBER)
-    return words.empty() ? "a positive number"
-                         : "a positive number and perhaps " + utils::join_words(words, " or ") +
-            " and perhaps its unit";
-  if (kind == INTEGER)
-    return (may_be_auto ? "auto or " : "") + of_formulations(*this, [](const Range &range) {
-             return fmt::format("{} to {}", range.fewest, range.most);
-           });
-  if (kind != WORD) return utils::join_words(words, " ");
   std::string text;
   for (size_t n = 0; n < words.size(); ++n)
     text += (n == 0 ? "" : n + 1 == words.size() ? " or " : ", ") + words[n];
   return text;
 }
 
-std::string Keyword::possible_values() const
+std::string Keyword::required() const
 {
-  std::string text = required();
-  return text;
+  if (kind == NUMBER)
+    return words.empty()
+        ? "a positive number"
+        : "a positive number and perhaps " + alternatives(words) + " and perhaps its unit";
+  if (kind == INTEGER)
+    return (may_be_auto ? "auto or " : "") + of_formulations(*this, [](const Range &range) {
+             return fmt::format("{} to {}", range.fewest, range.most);
+           });
+  return kind == WORD ? alternatives(words) : utils::join_words(words, " ");
 }
 
 /// An integer that is too large for its type becomes its largest value, which no range contains.
@@ -195,7 +196,7 @@ namespace {
 std::string default_cell(const Keyword &row)
 {
   if (row.kind != Keyword::INTEGER) {
-    std::string cell = row.standard;
+    std::string cell = row.kind == Keyword::WORD ? row.words.front() : "";
     for (const auto &other : row.standards)
       cell += fmt::format(", with {}{}{} {}", other.keyword, other.value.empty() ? "" : " ",
                           other.value, other.word);
@@ -207,16 +208,18 @@ std::string default_cell(const Keyword &row)
 }
 
 /// A value in brackets belongs to the keyword of the row, any other to the other keyword.
-std::string conditions_cell(const std::vector<Keyword::Condition> &conditions, bool excluded)
+std::string rules_cell(const std::string &name, Rule::Kind kind)
 {
   std::vector<std::string> parts;
-  for (const auto &one : conditions) {
-    if (one.value.empty())
-      parts.push_back(one.keyword);
+  for (const auto &rule : keyword_rules()) {
+    if (rule.kind != kind || !rule.is_for(name)) continue;
+    const std::string own = rule.own.empty() ? "" : fmt::format(" ({})", rule.own);
+    if (kind == Rule::REQUIRE)
+      parts.push_back(utils::join_words(rule.others, "|") + (rule.values.empty() ? "" : " ") +
+                      utils::join_words(rule.values, "|") + own);
     else
-      parts.push_back(excluded ? fmt::format("{} ({})", one.keyword, one.value)
-                               : one.keyword + " " + one.value +
-                              (one.only_for.empty() ? "" : fmt::format(" ({})", one.only_for)));
+      for (const auto &other : rule.others)
+        if (other != name) parts.push_back(other + own);
   }
   return utils::join_words(parts, ", ");
 }
@@ -229,8 +232,8 @@ std::string GearQuat::list_of_keywords()
   std::vector<std::vector<std::string>> lines = {
       {"keyword", "about", "kind", "values", "default", "requires", "excludes", "meaning"}};
   for (const auto &row : keyword_table())
-    lines.push_back({row.name, row.about, KINDS[row.kind], row.possible_values(), default_cell(row),
-                     conditions_cell(row.needs, false), conditions_cell(row.excludes, true),
+    lines.push_back({row.name, row.about, KINDS[row.kind], row.required(), default_cell(row),
+                     rules_cell(row.name, Rule::REQUIRE), rules_cell(row.name, Rule::EXCLUDE),
                      row.meaning});
   std::vector<size_t> width(lines[0].size(), 1);
   for (const auto &line : lines)

@@ -25,7 +25,7 @@ class Keyword:
 
     ``about`` is integration, step, bodies, physics or output. ``kind`` is word, integer, number, name or mask.
     ``requires`` and ``excludes`` are triples of another keyword, the value that it must have, and the value of this
-    keyword that requires or excludes it; an empty value means any value.
+    keyword that requires or excludes it; an empty value means any value, and alternatives have vertical bars between.
     """
 
     name: str
@@ -65,9 +65,8 @@ class Keyword:
 
     def suits(self, formulation):
         """True if a value that was given with another formulation has the same meaning with this one."""
-        if len(self.ranges) > 1 or any(name == "formulation" for name, _, _ in self.requires):
-            return False
-        return formulation != "momentum" or self.name not in ("passes", "project", "preset")
+        allowed = [value.split("|") for name, value, _ in self.requires if name == "formulation"]
+        return len(self.ranges) <= 1 and all(len(values) > 1 and formulation in values for values in allowed)
 
 
 def _condition(text):

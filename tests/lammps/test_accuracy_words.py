@@ -61,7 +61,7 @@ def test_the_preset_of_the_paper_is_its_keywords(liquid, formulation):
 def test_the_preset_means_formulation_second(liquid, lmp_wheel):
     assert (liquid("preset paper")[1] == liquid("formulation second preset paper")[1]).all()
     deck = two_molecules("molecule formulation momentum preset paper", after="run 0")
-    lmp_wheel.refuse(deck, "preset paper: the paper has formulations first and second", ranks=2)
+    lmp_wheel.refuse(deck, "preset paper requires formulation second or first", ranks=2)
 
 
 @pytest.fixture
