@@ -10,7 +10,7 @@ from .decks import ROOT
 
 INCLUDED = (ROOT / "src" / "GEARQUAT", ROOT / "tests" / "unit")
 #: the sources of the kernel beside its headers
-KERNEL = (ROOT / "src" / "GEARQUAT" / "gear_quat_turn.cpp",)
+KERNEL = tuple(ROOT / "src" / "GEARQUAT" / f"gear_quat_{name}.cpp" for name in ("coefficients", "startup", "turn"))
 
 
 @cache

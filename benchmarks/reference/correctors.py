@@ -42,7 +42,7 @@ def _descend(c, degree, residual, slope):
 def completed(rest):
     """All coefficients: ``rest`` is c_2 ... c_(N-1), from which the order determines c_0 and c_1.
 
-    Eqs. (1) and (2) at the head of src/GEARQUAT/gear_quat_tuned.h; fractions give fractions.
+    Eqs. (1) and (2) at the head of src/GEARQUAT/gear_quat_coefficients.cpp; fractions give fractions.
     """
     c, n = [0, 0, *rest], 2 + len(rest)
     residual = n / c[-1]

@@ -19,13 +19,26 @@
 #ifndef GEAR_QUAT_HISTORY_H
 #define GEAR_QUAT_HISTORY_H
 
-#include "gear_quat_coefficients.h"
 #include "gear_quat_math.h"
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace LAMMPS_NS::GearQuat {
+
+// values kept: rows of a history
+
+constexpr int FIRST_FEWEST = 3, FIRST_MOST = 8, FIRST_PAPER = 5;
+constexpr int SECOND_FEWEST = 4, SECOND_MOST = 12, SECOND_PAPER = 6;
+constexpr int MAX_VALUES = SECOND_MOST;
+
+/// Loads remembered with keyword tolerance, and rows of the longest history.
+constexpr int MOST_LOADS = 13, MOST_ROWS = MOST_LOADS + 2;
+
+/// Three values have the coefficients of velocity Verlet, c = (0, 1, 1).  Where velocities are read
+/// with the forces, they are then those of half a step before.
+constexpr int VERLET = 3;
 
 /// MOMENTUM: positions as in SECOND, and angular momenta.  FIRST and SECOND: those of the paper.
 enum class Formulation { MOMENTUM, SECOND, FIRST };
@@ -40,11 +53,11 @@ inline const char *word_of(Formulation formulation)
 /// Settings common to all bodies of a run.
 struct Scheme {
   Formulation formulation = Formulation::SECOND;
-  int rows = 0;                ///< values kept; 0: as many as the paper
-  int passes = 1;              ///< first, second: corrections with the same forces
-  bool tuned = false;          ///< momentum: coefficients of gear_quat_tuned.h, otherwise Gear's
-  bool velocity_c0 = false;    ///< second: c_0 for velocity-dependent right sides (the paper's)
-  bool predicted_omega = false;       ///< first: omega that feeds Eq. 5
+  int rows = 0;          ///< values kept; 0: as many as the paper
+  int passes = 1;        ///< first, second: corrections with the same forces
+  bool tuned = false;    ///< momentum: coefficients of gear_quat_coefficients.cpp, otherwise Gear's
+  bool velocity_c0 = false;        ///< second: c_0 for velocity-dependent right sides (the paper's)
+  bool predicted_omega = false;    ///< first: omega that feeds Eq. 5
   bool predicted_momentum = false;    ///< first: momentum that feeds Eq. 13 (the paper's)
   bool project = true;                ///< first, second: onto |q| = 1 after every step
   bool compensate = false;            ///< compensated sums of the rows that are integrated
@@ -62,8 +75,10 @@ struct Scheme {
   /// Doubles of a history: rows, carries, trial rows.
   int size() const { return (values() + carries() + (remembers ? 2 : 0)) * width(); }
   int trial_row() const { return (values() + carries()) * width(); }
+  /// One remembered load has as many rows, and is another method.
+  bool is_verlet() const { return !first() && !remembers && values() == VERLET; }
   /// Order of the error of positions in time, if forces vary slowly along the trajectory (otherwise
-  /// N for even N, and N - 1 with velocity_c0).  See gear_quat_tuned.h.
+  /// N for even N, and N - 1 with velocity_c0).  See gear_quat_coefficients.cpp.
   int order() const;
   /// The number of values for which a start has the order required by this scheme.
   int start_values() const { return tuned ? std::min(values(), order()) : values(); }
@@ -113,34 +128,10 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   /// n: 3 to 15.  COUNT: components from the first on; the others do not change.
   template <int COUNT = WIDTH> static void predict(double *rows, int n)
   {
-    switch (n) {    // a number of rows known at compile time, so that a column stays in registers
-      case 3:
-        return pascal<3, COUNT>(rows);
-      case 4:
-        return pascal<4, COUNT>(rows);
-      case 5:
-        return pascal<5, COUNT>(rows);
-      case 6:
-        return pascal<6, COUNT>(rows);
-      case 7:
-        return pascal<7, COUNT>(rows);
-      case 8:
-        return pascal<8, COUNT>(rows);
-      case 9:
-        return pascal<9, COUNT>(rows);
-      case 10:
-        return pascal<10, COUNT>(rows);
-      case 11:
-        return pascal<11, COUNT>(rows);
-      case 12:
-        return pascal<12, COUNT>(rows);
-      case 13:
-        return pascal<13, COUNT>(rows);
-      case 14:
-        return pascal<14, COUNT>(rows);
-      case 15:
-        return pascal<15, COUNT>(rows);
-    }
+    // a number of rows known at compile time, so that a column stays in registers
+    static constexpr auto by_rows =
+        predictors<COUNT>(std::make_integer_sequence<int, MOST_ROWS - 2>());
+    by_rows[n - 3](rows);
   }
 
   /// Feed the residual of COUNT components, the first at `component`, back into every row from row
@@ -191,6 +182,13 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
     sum = a + b;
     const double rounded = sum - a;
     carry = (a - (sum - rounded)) + (b - rounded);
+  }
+
+  template <int COUNT, int... N>
+  static constexpr std::array<void (*)(double *), sizeof...(N)>
+  predictors(std::integer_sequence<int, N...>)
+  {
+    return {pascal<N + 3, COUNT>...};
   }
 
   // unrolled by name: LAMMPS is mostly built with -O2, which does not unroll loops

@@ -17,7 +17,7 @@
      c_0 a + kappa (w x a - I^-1 (w x A r + m x a))
    The error of the predicted L(t) changes the rotation also by its first moment about the middle of
    the step, in proportion to L.  This would not be symmetric in time and damp librations; the term
-   with kappa, the `moment` of gear_quat_tuned.h, cancels it.
+   with kappa, the `moment` of gear_quat_coefficients.h, cancels it.
 
    First-order formulation (Evans), 13 components:
      x' = p/m,  p' = F,  q' = 1/2 W(q) omega,  omega' from Euler's equations
@@ -31,9 +31,9 @@
 #ifndef GEAR_QUAT_INTEGRATOR_H
 #define GEAR_QUAT_INTEGRATOR_H
 
+#include "gear_quat_coefficients.h"
 #include "gear_quat_gauss.h"
 #include "gear_quat_history.h"
-#include "gear_quat_tuned.h"
 #include "gear_quat_turn.h"
 
 #include <type_traits>
@@ -291,36 +291,8 @@ class Integrator : public Kinematics {
     for (int body = 0; body < count; ++body) first[body] = rows[body] + Scheme::SECOND_QUATERNION;
     turning.changes(count, bodies, first, Scheme::SECOND_WIDTH, turned);
     for (int body = 0; body < count && scheme.remembers; ++body)
-      turn_in_parts(*bodies[body], rows[body], turned[body]);
+      turning.change_in_parts(*bodies[body], first[body], Scheme::SECOND_WIDTH, turned[body]);
   }
-
-  /// The series of a turn converge up to an angle; steps of remembered loads may be longer.
-  void turn_in_parts(const RigidBody &body, const double *rows, double *turned) const
-  {
-    constexpr double FARTHEST = 0.7;
-    const double *q = rows + Scheme::SECOND_QUATERNION;
-    const double *momenta = rows + Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM;
-    double axes[9], angle[3], now[4];
-    rotation_matrix(q, 1.0, axes);
-    turn_of(body, axes, momenta, angle);
-    const double parts = std::ceil(length(angle) / FARTHEST);
-    if (!(parts > 1.0) || !(parts < MOST_PARTS)) return;
-    copy(q, 4, now);
-    for (double part = 0.0; part < parts; ++part) {
-      Turn::Momentum rest;    // about the beginning of the part
-      for (int i = 0; i < 3; ++i) {
-        double unit = 1.0 / parts;
-        for (int k = 0; k + 1 < n; ++k)
-          rest[k][i] = (k + 1) * momenta[k * Scheme::SECOND_WIDTH + i];
-        for (int j = 0; j + 2 < n; ++j)
-          for (int k = n - 3; k >= j; --k) rest[k][i] += part / parts * rest[k + 1][i];
-        for (int k = 0; k + 1 < n; ++k, unit /= parts) rest[k][i] *= unit;
-      }
-      turning.advance(body, rest, now);
-    }
-    for (int i = 0; i < 4; ++i) turned[i] = now[i] - q[i];
-  }
-  static constexpr double MOST_PARTS = 1.0e4;
 
   /// Calls act with the kind of history that this scheme has.
   template <class Act> void with_history(Act act) const

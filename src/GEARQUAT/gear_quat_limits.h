@@ -26,7 +26,6 @@
 
 #include "gear_quat_chain.h"
 #include "gear_quat_startup.h"
-#include "gear_quat_tuned.h"
 
 #include <algorithm>
 #include <array>
@@ -156,7 +155,7 @@ inline double noise_gain(const Scheme &scheme)
 /// the temperature of the forces, as it does for atoms; formulation first has no such method.
 inline bool suits_noise(const Scheme &scheme, Noise noise)
 {
-  if (noise == Noise::NONE || is_verlet(scheme)) return true;
+  if (noise == Noise::NONE || scheme.is_verlet()) return true;
   if (noise == Noise::RANDOM && !scheme.first()) return false;
   return !scheme.tuned && scheme.values() <= (scheme.first() ? 3 : 4);
 }

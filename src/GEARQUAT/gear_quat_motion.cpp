@@ -280,7 +280,7 @@ bool Motion::has_to_start(double **f)
   const bool needs = !step.started || reason;
   movers = present_movers();
   if (needs) step.check_loads(f);
-  for (int ibody = 0; ibody < bodies.nmoved() && !needs && is_verlet(step.scheme()); ++ibody) {
+  for (int ibody = 0; ibody < bodies.nmoved() && !needs && step.scheme().is_verlet(); ++ibody) {
     project_norm(bodies.change_state(ibody).q);
     seed_body(bodies, ibody, scaled_of(bodies, step.coupling.get(), ibody), step.acting(ibody),
               step.scheme(), step.length(), 3);
@@ -490,7 +490,7 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
                               : "because there are no bodies yet";
   const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
   utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
-                 is_verlet(choice.scheme) ? " (velocity Verlet)"
+                 choice.scheme.is_verlet() ? " (velocity Verlet)"
                      : other_corrector    ? " and corrector gear"
                                           : "",
                  why);

@@ -37,12 +37,8 @@
 #ifndef GEAR_QUAT_STARTUP_H
 #define GEAR_QUAT_STARTUP_H
 
-#include "gear_quat_coefficients.h"
 #include "gear_quat_integrator.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
@@ -83,23 +79,7 @@ class StartPlan {
 
   /// After pair() was evaluated.  change: the largest change of an acceleration in any body,
   /// relative to its motion (Collocation::set_load).
-  Verdict take(double change)
-  {
-    if (!std::isfinite(change) || (present == 1 && change > TOO_FAR))
-      return Verdict::SHORTER_SPACING;
-    const double before = is_new() ? first[present - 1]
-                                   : std::max(last[present], slowest * first[present]);
-    const double falls = is_new() ? FALLS : CONTRACTS;
-    if (change > CONVERGED && change > falls * before)
-      return change < ROUNDING ? Verdict::CONVERGED : Verdict::JUMPS;
-    last[present] = change;
-    if (is_new()) {
-      known = present;
-      first[known] = change;
-    } else if (before > 0.0)
-      contraction = std::max({contraction == 1.0 ? 0.0 : contraction, change / before, slowest});
-    return choose();
-  }
+  Verdict take(double change);
 
  private:
   // the first pair is too far out if its relative error exceeds this
@@ -111,10 +91,7 @@ class StartPlan {
   // tolerance for the last changes, relative to the truncation error; smaller beyond four pairs,
   // since the highest derivatives multiply errors of the inner pairs, unless there is a spare pair
   static constexpr double ALLOWED = 0.03;
-  double allowed_part() const
-  {
-    return odd || known < 5 ? ALLOWED : std::ldexp(ALLOWED, 3 * (4 - known));
-  }
+  double allowed_part() const;
   // limit for the extrapolated errors inside, relative to the error of the last new pair
   static constexpr double CLEAR = 0.5;
 
@@ -129,33 +106,10 @@ class StartPlan {
   double first[MAX_PAIRS + 1] = {HUGE_VAL}, last[MAX_PAIRS + 1] = {};    ///< changes
 
   /// Truncation error of a polynomial of the method's order: the error at the first pair beyond it.
-  double left_out() const
-  {
-    if (odd || known < 2) return first[known];
-    return first[known] * std::min(1.0, first[known] / first[known - 1]);
-  }
+  double left_out() const;
 
   /// Continues a round, starts another round, adds a pair, or ends.
-  Verdict choose()
-  {
-    const bool more = known < most && first[known] > CONVERGED;
-    const double allowed = more ? 0.0 : std::max(CONVERGED, allowed_part() * left_out());
-    while (present < round)
-      if (contraction * last[++present] > allowed) return Verdict::GOES_ON;
-    const double next = contraction * *std::max_element(last + 1, last + known + 1);
-    // extrapolation to the next pair multiplies errors by up to four for each pair inside
-    const bool again = more ? round < known && std::ldexp(next, 2 * known) > CLEAR * first[known]
-                            : next > allowed;
-    if (!again && !more) return Verdict::CONVERGED;
-    if (again) {
-      round = known;
-      present = 0;
-      return choose();
-    }
-    round = 0;
-    present = known + 1;
-    return Verdict::GOES_ON;
-  }
+  Verdict choose();
 };
 
 /// Result of a start.
@@ -210,67 +164,13 @@ struct TaylorSeries {
 };
 
 /// The three terms determined by a state and its load, in units of the step h.
-inline TaylorSeries local_series(const RigidBody &body, const BodyState &state, const Load &load,
-                                 double h)
-{
-  TaylorSeries series;
-  series.terms = 3;
-  double omegadot_body[3], qdot[4], qddot[4];
-  angular_acceleration(body, state, dot4(state.q, state.q), load, omegadot_body);
-  quaternion_rate(state.q, state.omega_body, qdot);
-  quaternion_acceleration(state.q, qdot, omegadot_body, qddot);
-  momentum_along_space(body, state, series.momentum[0]);
-  for (int i = 0; i < 3; ++i) {
-    series.momentum[0][i] *= h;
-    series.momentum[1][i] = h * h * load.torque_space[i];
-    series.c[0][i] = state.center[i];
-    series.c[1][i] = h * state.velocity[i];
-    series.c[2][i] = 0.5 * h * h * load.force[i] / body.mass;
-  }
-  for (int i = 0; i < 4; ++i) {
-    series.c[0][3 + i] = state.q[i];
-    series.c[1][3 + i] = h * qdot[i];
-    series.c[2][3 + i] = 0.5 * h * h * qddot[i];
-  }
-  return series;
-}
+TaylorSeries local_series(const RigidBody &body, const BodyState &state, const Load &load,
+                          double h);
 
 /// Fills all rows of a history from a series in units of `series_step`; rows without a known term
 /// are zero.  Momenta and angular velocities of the first-order form are derivatives of the series.
-inline void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries &series,
-                 double series_step, double h, double *rows)
-{
-  const int n = scheme.values(), width = scheme.width(), quat = scheme.quaternion();
-  const double ratio = h / series_step;
-  for (int i = 0; i < scheme.size(); ++i) rows[i] = 0.0;
-
-  double power = 1.0;
-  for (int j = 0; j < n && j < series.terms_of_q(); ++j, power *= ratio) {
-    double *row = rows + j * width;
-    const bool known = j < series.terms;
-    for (int i = 0; i < 3 && known; ++i) row[Scheme::POSITION + i] = power * series.c[j][i];
-    if (!scheme.momentum() || j == 0)
-      for (int i = 0; i < 4; ++i) row[quat + i] = power * series.c[j][3 + i];
-    else if (known)
-      for (int i = 0; i < 3; ++i)
-        row[Scheme::ANGULAR_MOMENTUM + i] = power / j * series.momentum[j - 1][i];
-  }
-  if (!scheme.first()) return;
-
-  // p = m x' and omega = 2 W(q)^T q', term by term
-
-  power = 1.0 / series_step;
-  for (int j = 0; j < n && j + 1 < series.terms_of_q(); ++j, power *= ratio) {
-    double *row = rows + j * width;
-    for (int i = 0; i < 3; ++i)
-      row[Scheme::MOMENTUM + i] = power * body.mass * (j + 1) * series.c[j + 1][i];
-    for (int k = 0; k <= j; ++k) {
-      double product[3];
-      w_transposed_times(series.c[k] + 3, series.c[j + 1 - k] + 3, product);
-      for (int i = 0; i < 3; ++i) row[Scheme::OMEGA + i] += power * 2.0 * (j + 1 - k) * product[i];
-    }
-  }
-}
+void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries &series,
+          double series_step, double h, double *rows);
 
 /// Collocation for a body or a scalar; the tables of the object are common to all.
 class Collocation {
@@ -295,179 +195,62 @@ class Collocation {
   using Scalar = Nodes<1, 1>;
 
   /// Uses the number of nodes required by the order of a history with `values` rows.
-  explicit Collocation(int values) : half(StartPlan::pairs_for(values)), polynomial(half + 1)
-  {
-    for (int pairs = 0; pairs <= half; ++pairs) polynomial[pairs].make(pairs);
-  }
+  explicit Collocation(int values);
 
   /// Number of nodes on each side of the start.  The forces at the start itself are already known.
   int pairs() const { return half; }
 
   /// Begins without pairs: with constant second derivatives, taken from `series` (at least three
   /// terms, in units of the node spacing).
-  void begin(const RigidBody &body, const TaylorSeries &series, Workspace &w) const
-  {
-    w.pairs = 0;
-    w.body = body;
-    std::copy_n(series.c[0] + 3, 4, w.q);
-    for (int i = 0; i < 3; ++i) {
-      w.start[0][i] = series.c[0][i];
-      w.start[1][i] = series.c[1][i];
-      w.rate[half][i] = 2.0 * series.c[2][i];
-      w.start[0][3 + i] = 0.0;
-      w.start[1][3 + i] = series.momentum[0][i];
-      w.rate[half][3 + i] = series.momentum[1][i];
-    }
-  }
+  void begin(const RigidBody &body, const TaylorSeries &series, Workspace &w) const;
 
   /// Begins for any functions: their values, first and second derivatives.
   template <int WIDTH>
   void begin(const double *value, const double *first, const double *second,
-             Nodes<WIDTH, 2> &w) const
-  {
-    w.pairs = 0;
-    std::copy_n(value, WIDTH, w.start[0]);
-    std::copy_n(first, WIDTH, w.start[1]);
-    std::copy_n(second, WIDTH, w.rate[half]);
-  }
+             Nodes<WIDTH, 2> &w) const;
 
   /// Starts without pairs: a constant rate.
-  void begin(double start, double rate, Scalar &s) const
-  {
-    s.pairs = 0;
-    s.start[0][0] = start;
-    s.rate[half][0] = rate;
-  }
+  void begin(double start, double rate, Scalar &s) const;
 
   /// Adds a pair, with the rates of the present polynomial.
-  template <int WIDTH, int ORDER> void foretell(Nodes<WIDTH, ORDER> &w) const
-  {
-    const Polynomial &inside = polynomial[w.pairs];
-    const int next = w.pairs + 1;
-    for (int side = 0; side < 2; ++side)
-      for (int i = 0; i < WIDTH; ++i) {
-        double sum = 0.0;
-        for (int l = -w.pairs; l <= w.pairs; ++l)
-          sum += inside.beyond[side][column_of(l)] * w.rate[half + l][i];
-        w.rate[half + (side ? next : -next)][i] = sum;
-      }
-    w.pairs = next;
-  }
+  template <int WIDTH, int ORDER> void foretell(Nodes<WIDTH, ORDER> &w) const;
 
   /// Functions and their first derivatives at a known node by the present polynomial.
   template <int WIDTH>
-  void values_at(int node, const Nodes<WIDTH, 2> &w, double *value, double *rate) const
-  {
-    const Polynomial &present = polynomial[w.pairs];
-    for (int i = 0; i < WIDTH; ++i) {
-      value[i] = w.start[0][i] + node * w.start[1][i];
-      rate[i] = w.start[1][i];
-      for (int l = -w.pairs; l <= w.pairs; ++l) {
-        value[i] += present.value[column_of(node)][column_of(l)] * w.rate[half + l][i];
-        rate[i] += present.rate[column_of(node)][column_of(l)] * w.rate[half + l][i];
-      }
-    }
-  }
+  void values_at(int node, const Nodes<WIDTH, 2> &w, double *value, double *rate) const;
 
   /// State of the body at a known node by the present polynomial; spacing: time between nodes.
-  BodyState state_at(int node, const Workspace &w, double spacing) const
-  {
-    double value[6], rate[6], axes[9];
-    values_at(node, w, value, rate);
-    BodyState state;
-    for (int i = 0; i < 3; ++i) {
-      state.center[i] = value[i];
-      state.velocity[i] = rate[i] / spacing;
-    }
-    Turn::Momentum momentum;
-    const int terms = momentum_of(w, w.pairs, node, momentum);
-    std::copy_n(w.q, 4, state.q);
-    Turn(terms).advance(w.body, momentum, state.q);
-    rotation_matrix(state.q, 1.0, axes);
-    to_body(axes, rate + 3, state.omega_body);
-    for (int i = 0; i < 3; ++i)
-      state.omega_body[i] *= w.body.inertia[i] > 0.0 ? 1.0 / (spacing * w.body.inertia[i]) : 0.0;
-    return state;
-  }
+  BodyState state_at(int node, const Workspace &w, double spacing) const;
 
   /// Stores the load at a node, until settle().  length: the size of the body.  Returns the change
   /// of the second derivatives there, relative to the first or second derivatives of that body,
   /// whichever are larger; infinite if the load is not finite.
   double set_load(int node, const RigidBody &body, const BodyState &state, const Load &load,
-                  double spacing, double length, Workspace &w) const
-  {
-    double *met = w.met[node > 0], change[6];
-    for (int i = 0; i < 3; ++i) {
-      met[i] = spacing * spacing * load.force[i] / body.mass;
-      met[3 + i] = spacing * spacing * load.torque_space[i];
-    }
-    for (int i = 0; i < 6; ++i) {
-      if (!std::isfinite(met[i])) return std::numeric_limits<double>::infinity();
-      change[i] = met[i] - w.rate[half + node][i];
-    }
-    return relative(change, met, state, length, w);
-  }
+                  double spacing, double length, Workspace &w) const;
 
   /// Stores the rate of a scalar at a node.
   void set_rate(int node, double rate, Scalar &s) const { set_rates(node, &rate, s); }
   /// Stores the rates of any functions at a node.
   template <int WIDTH, int ORDER>
-  void set_rates(int node, const double *rates, Nodes<WIDTH, ORDER> &w) const
-  {
-    std::copy_n(rates, WIDTH, w.met[node > 0]);
-  }
+  void set_rates(int node, const double *rates, Nodes<WIDTH, ORDER> &w) const;
 
   /// The rate at the start; rates at the other nodes are before and after it in memory.
   const double *rate_at_start(const Scalar &s) const { return s.rate[half]; }
 
   /// Updates the polynomial with both nodes of a pair, treated equally, for time reversibility.
-  template <int WIDTH, int ORDER> void settle(int pair, Nodes<WIDTH, ORDER> &w) const
-  {
-    for (int i = 0; i < WIDTH; ++i) {
-      w.rate[half - pair][i] = w.met[0][i];
-      w.rate[half + pair][i] = w.met[1][i];
-    }
-  }
+  template <int WIDTH, int ORDER> void settle(int pair, Nodes<WIDTH, ORDER> &w) const;
 
   /// The polynomial through the innermost `pairs` as a series in units of the node spacing.
-  TaylorSeries series(const Workspace &w, int pairs) const
-  {
-    TaylorSeries series;
-    double c[TaylorSeries::MAX_TERMS][6], q[Turn::MOST + 1][4];
-    series.terms = terms_of(pairs);
-    static_assert(MAX_NODES + 2 <= TaylorSeries::MAX_TERMS, "series too short for the nodes");
-    expand<6>(w, pairs, c[0]);
-    const int terms = momentum_of(w, pairs, 1, series.momentum);
-    Turn::coefficients(w.body, series.momentum, terms, w.q, q);
-    for (int j = 0; j < TaylorSeries::MAX_TERMS; ++j) {
-      for (int i = 0; i < 3; ++i) series.c[j][i] = j < series.terms ? c[j][i] : 0.0;
-      std::copy_n(q[j], 4, series.c[j] + 3);
-    }
-    return series;
-  }
+  TaylorSeries series(const Workspace &w, int pairs) const;
   /// The series of any functions: c[WIDTH * j + i] for term j of function i.
-  template <int WIDTH> void expand(const Nodes<WIDTH, 2> &w, int pairs, double *c) const
-  {
-    for (int i = 0; i < WIDTH; ++i) {
-      c[i] = w.start[0][i];
-      c[WIDTH + i] = w.start[1][i];
-      for (int j = 0; j + 2 < terms_of(pairs); ++j)
-        c[WIDTH * (j + 2) + i] = double(coefficient(j, i, w, pairs) / ((j + 1) * (j + 2)));
-    }
-  }
+  template <int WIDTH> void expand(const Nodes<WIDTH, 2> &w, int pairs, double *c) const;
   /// The number of terms of a function with known second derivatives.
   static int terms_of(int pairs) { return 2 * pairs + 3; }
   TaylorSeries series(const Workspace &w) const { return series(w, w.pairs); }
 
   /// The series of a scalar whose rates are per unit of time, with `spacing` between nodes.
   /// Returns the number of terms, at most MAX_NODES + 1.
-  int series(const Scalar &s, int pairs, double spacing, double *c) const
-  {
-    c[0] = s.start[0][0];
-    for (int j = 0; j <= 2 * pairs; ++j)
-      c[j + 1] = double(spacing * coefficient(j, 0, s, pairs) / (j + 1));
-    return 2 * pairs + 2;
-  }
+  int series(const Scalar &s, int pairs, double spacing, double *c) const;
 
  private:
   /// Motion slower than this part of the body's size (of a radian) in a step is ignored.
@@ -483,47 +266,8 @@ class Collocation {
     double rate[MAX_NODES][MAX_NODES];             ///< once integrated, at node k
     double beyond[2][MAX_NODES];                   ///< at the nodes just outside
 
-    void make(int pairs)
-    {
-      interpolate(pairs);
-      for (int l = -pairs; l <= pairs; ++l) {
-        const int column = column_of(l);
-        for (int k = -pairs; k <= pairs; ++k) {
-          long double twice = 0.0, once = 0.0, power = k;
-          for (int j = 0; j <= 2 * pairs; ++j) {
-            once += monomial[j][column] * power / (j + 1);
-            power *= k;
-            twice += monomial[j][column] * power / ((j + 1) * (j + 2));
-          }
-          value[column_of(k)][column] = double(twice);
-          rate[column_of(k)][column] = double(once);
-        }
-        for (int side = 0; side < 2; ++side) {
-          long double sum = 0.0, power = 1.0;
-          for (int j = 0; j <= 2 * pairs; ++j, power *= side ? pairs + 1 : -pairs - 1)
-            sum += monomial[j][column] * power;
-          beyond[side][column] = double(sum);
-        }
-      }
-    }
-
-    /// Lagrange's basis polynomials, multiplied out factor by factor.
-    void interpolate(int pairs)
-    {
-      for (int l = -pairs; l <= pairs; ++l) {
-        long double basis[MAX_NODES] = {1.0L};
-        long double denominator = 1.0L;
-        int degree = 0;
-        for (int root = -pairs; root <= pairs; ++root) {
-          if (root == l) continue;
-          ++degree;
-          for (int j = degree; j >= 0; --j)
-            basis[j] = (j > 0 ? basis[j - 1] : 0.0L) - root * (j < degree ? basis[j] : 0.0L);
-          denominator *= l - root;
-        }
-        for (int j = 0; j <= 2 * pairs; ++j) monomial[j][column_of(l)] = basis[j] / denominator;
-      }
-    }
+    void make(int pairs);
+    void interpolate(int pairs);
   };
 
   int half;
@@ -531,43 +275,13 @@ class Collocation {
 
   /// Coefficient of s^j in the polynomial through the innermost `pairs`, component i.
   template <int WIDTH, int ORDER>
-  long double coefficient(int j, int i, const Nodes<WIDTH, ORDER> &w, int pairs) const
-  {
-    long double sum = 0.0;
-    for (int l = -pairs; l <= pairs; ++l)
-      sum += polynomial[pairs].monomial[j][column_of(l)] * w.rate[half + l][i];
-    return sum;
-  }
+  long double coefficient(int j, int i, const Nodes<WIDTH, ORDER> &w, int pairs) const;
 
   /// The series of L times `spacings` of the nodes, in units of this time.  Returns its terms.
-  int momentum_of(const Workspace &w, int pairs, double spacings, Turn::Momentum &found) const
-  {
-    double c[TaylorSeries::MAX_TERMS][6], power = spacings;
-    expand<6>(w, pairs, c[0]);
-    const int terms = terms_of(pairs) - 1;
-    for (int k = 0; k < terms; ++k, power *= spacings)
-      for (int i = 0; i < 3; ++i) found[k][i] = power * (k + 1) * c[k + 1][3 + i];
-    return terms;
-  }
+  int momentum_of(const Workspace &w, int pairs, double spacings, Turn::Momentum &found) const;
 
   static double relative(const double *change, const double *second, const BodyState &state,
-                         double length, const Workspace &w)
-  {
-    double part[2] = {0.0, 0.0}, scale[2] = {SMALLEST * length, SMALLEST}, axes[9];
-    rotation_matrix(state.q, dot4(state.q, state.q), axes);
-    for (int p = 0; p < 2; ++p) {
-      double of[3][3];
-      const double *from[] = {change + 3 * p, w.start[1] + 3 * p, second + 3 * p};
-      for (int k = 0; k < 3; ++k)
-        p == 0 ? (void) std::copy_n(from[k], 3, of[k]) : to_body(axes, from[k], of[k]);
-      for (int i = 0; i < 3; ++i) {
-        const double unit = p == 0 ? 1.0 : w.body.inertia[i] > 0.0 ? 0.5 / w.body.inertia[i] : 0.0;
-        part[p] = std::max(part[p], unit * std::fabs(of[0][i]));
-        scale[p] = std::max({scale[p], unit * std::fabs(of[1][i]), unit * std::fabs(of[2][i])});
-      }
-    }
-    return std::max(part[0] / scale[0], part[1] / scale[1]);
-  }
+                         double length, const Workspace &w);
 };
 
 }    // namespace LAMMPS_NS::GearQuat

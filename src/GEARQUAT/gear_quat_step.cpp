@@ -142,7 +142,7 @@ void Step::predict(double **f)
   };
   constexpr int WIDTH = Scheme::SECOND_WIDTH;    // with velocities of half a step before
   std::array<double, 2 * WIDTH> half;
-  const bool verlet = is_verlet(scheme());
+  const bool verlet = scheme().is_verlet();
   const auto seen = [&half, verlet](const double *rows) {
     if (!verlet) return rows;
     std::copy_n(rows, 2 * WIDTH, half.begin());

@@ -241,7 +241,7 @@ void Thermostat::errors(double h, int values, const Include &include) const
   double most = 0.0;
   for (size_t c = 0; c < chains.size(); ++c)
     most = std::max(most, chains[c].left_out(target_of(c, 0.0, h), h, terms));
-  most *= adams_moulton(terms).value();
+  most *= double(adams_moulton(terms));
   StepErrors found;
   found.energy = std::fabs(h) * 3.0 * line.kt * most;
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {

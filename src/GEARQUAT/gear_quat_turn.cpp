@@ -226,6 +226,33 @@ void Turn::advance(const RigidBody &body, const Momentum &momentum, double *q) c
   project_norm(q);
 }
 
+void Turn::change_in_parts(const RigidBody &body, const double *rows, int stride,
+                           double *change) const
+{
+  constexpr double FARTHEST = 0.7, MOST_PARTS = 1.0e4;
+  const double *momenta = rows + stride;    // row k: (k + 1)^-1 times a coefficient of L
+  double axes[9], along[3], angle2 = 0.0, now[4];
+  rotation_matrix(rows, 1.0, axes);
+  to_body(axes, momenta, along);
+  for (int i = 0; i < 3; ++i)
+    if (body.inertia[i] > 0.0) angle2 += along[i] * along[i] / (body.inertia[i] * body.inertia[i]);
+  const double parts = std::ceil(std::sqrt(angle2) / FARTHEST);
+  if (!(parts > 1.0) || !(parts < MOST_PARTS)) return;
+  std::copy_n(rows, 4, now);
+  for (double part = 0.0; part < parts; ++part) {
+    Momentum rest;    // about the beginning of the part
+    for (int i = 0; i < 3; ++i) {
+      double unit = 1.0 / parts;
+      for (int k = 0; k < orders.terms; ++k) rest[k][i] = (k + 1) * momenta[k * stride + i];
+      for (int j = 0; j + 1 < orders.terms; ++j)
+        for (int k = orders.terms - 2; k >= j; --k) rest[k][i] += part / parts * rest[k + 1][i];
+      for (int k = 0; k < orders.terms; ++k, unit /= parts) rest[k][i] *= unit;
+    }
+    advance(body, rest, now);
+  }
+  for (int i = 0; i < 4; ++i) change[i] = now[i] - rows[i];
+}
+
 void Turn::coefficients(const RigidBody &body, const Momentum &momentum, int terms, const double *q,
                         double (*found)[4])
 {

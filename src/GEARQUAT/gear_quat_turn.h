@@ -49,6 +49,8 @@ class Turn {
   /// the unit quaternion at the beginning, then the coefficients of the integral of h L(t).
   void changes(int count, const RigidBody *const *bodies, const double *const *rows, int stride,
                double (*change)[4]) const;
+  /// The series converge up to an angle: a longer step of one body is divided, and its change replaced.
+  void change_in_parts(const RigidBody &body, const double *rows, int stride, double *change) const;
   /// q: the unit quaternion of one body, at the beginning and then at the end of the step.
   void advance(const RigidBody &body, const Momentum &momentum, double *q) const;
 

@@ -171,7 +171,7 @@ TEST(Choice, WithRandomAndDissipativeForcesNothingHeats)
         const auto choice = noisy.choose(automatic(formulation));
         EXPECT_TRUE(suits_noise(choice.scheme, noise));
         EXPECT_EQ(choice.reason, Reason::NOISE);
-        EXPECT_EQ(is_verlet(choice.scheme), noise == Noise::RANDOM && formulation != FIRST);
+        EXPECT_EQ(choice.scheme.is_verlet(), noise == Noise::RANDOM && formulation != FIRST);
       }
   ChoiceOfValues noisy = scene(0.0);
   noisy.noise = Noise::DISSIPATIVE;

@@ -100,7 +100,7 @@ double chain_estimate_over_error(int n, double h)
     chain.conclude();
   }
   const double error = std::fabs(chain.friction() - xi(STEPS * h) - before);
-  return adams_moulton(n).value() * chain.left_out(target, h, n) / error;
+  return double(adams_moulton(n)) * chain.left_out(target, h, n) / error;
 }
 
 }    // namespace
@@ -187,8 +187,8 @@ TEST(RememberedLoads, OneLoadIsNotVelocityVerlet)
   // which has as many rows, and shows the forces velocities of half a step before
   const Scheme one = RememberedLoads::scheme(false);
   EXPECT_EQ(one.values(), VERLET);
-  EXPECT_FALSE(is_verlet(one));
-  EXPECT_TRUE(is_verlet(scheme_of(MOMENTUM, VERLET)));
+  EXPECT_FALSE(one.is_verlet());
+  EXPECT_TRUE(scheme_of(MOMENTUM, VERLET).is_verlet());
 }
 
 TEST(RememberedLoads, LoadsComeAndGoWithoutAnError)

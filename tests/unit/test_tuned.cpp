@@ -1,4 +1,4 @@
-/* gear_quat_tuned.h and gear_quat_limits.h: the order conditions, compared with the characteristic
+/* gear_quat_coefficients.h and gear_quat_limits.h: the order conditions, compared with the characteristic
    equation in exact fractions; every tuned set, for any numbers; and its response to random
    forces. */
 
@@ -12,6 +12,7 @@
 
 using namespace Drive;
 using Oracle::Rational;
+using Oracle::rational_of;
 
 namespace {
 
@@ -27,8 +28,7 @@ vector<Scheme> tuned_schemes()
 Exact gear(int n)
 {
   Exact c;
-  for (const Fraction &f : second_order_coefficients(n, false))
-    c.push_back({f.numerator, f.denominator});
+  for (const long double x : second_order_coefficients(n, false)) c.push_back(rational_of(x));
   return c;
 }
 
@@ -83,20 +83,6 @@ void refuses_one_percent(const Exact &right, bool c0_free = false)
       for (int k = c0_free ? 1 : 0; k < ORDER; ++k) contained |= head[k] != right[k];
     }
     EXPECT_EQ(holds(wrong), !contained) << n << " values, entry " << j;
-  }
-}
-
-/// The fraction represented by a decimal or by a quotient of small numbers.
-Rational rational_of(long double x)
-{
-  Rational::Integer h[2] = {1, 0}, k[2] = {0, 1};    // convergents of the continued fraction
-  for (long double rest = x;;) {
-    const auto whole = (Rational::Integer) std::floor(rest);
-    const Rational::Integer next_h = whole * h[0] + h[1], next_k = whole * k[0] + k[1];
-    h[1] = h[0], k[1] = k[0], h[0] = next_h, k[0] = next_k;
-    if (std::fabs((long double) h[0] / (long double) k[0] - x) <= 4e-19L * std::fabs(x))
-      return {h[0], k[0]};
-    rest = 1.0L / (rest - (long double) whole);
   }
 }
 

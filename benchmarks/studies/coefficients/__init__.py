@@ -2,7 +2,7 @@
 
 search.py and spectral.py (parameters and cost functions), kernel.cpp and kernel.py (motions with the kernel of the fix
 and any coefficients), properties.py (model equations and motions), prediction.py (the drift in liquids, from spectra).
-The coefficients are in src/GEARQUAT/gear_quat_tuned.h.
+The coefficients are in src/GEARQUAT/gear_quat_coefficients.cpp.
 """
 
 from dataclasses import dataclass
@@ -196,7 +196,7 @@ def find(results):
 
 # --- search ---------------------------------------------------------------------------------------
 def written(corrector, free_c0):
-    """The line of the table of src/GEARQUAT/gear_quat_tuned.h."""
+    """The line of the table of src/GEARQUAT/gear_quat_coefficients.cpp."""
     tail = ", ".join(f"{float(x):.9g}L" for x in corrector.c[3:])
     c0 = f", {float(corrector.c[0]):.9g}L" if free_c0 else ""
     return f"{{{{{tail}}}{c0}}},"

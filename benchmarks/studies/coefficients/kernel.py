@@ -92,7 +92,7 @@ def gear(values):
 
 
 def tuned(values):
-    """The Corrector of src/GEARQUAT/gear_quat_tuned.h, None if it has none."""
+    """The Corrector of src/GEARQUAT/gear_quat_coefficients.cpp, None if it has none."""
     tail, c0 = _ROWS(), ctypes.c_double()
     length = library().tuned_tail(values, tail, ctypes.byref(c0))
     if not length:

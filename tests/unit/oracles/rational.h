@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cmath>
 #include <ostream>
 #include <stdexcept>
 
@@ -67,5 +68,19 @@ class Rational {
     return product;
   }
 };
+
+/// The fraction represented by a number with an error of a few units of its last digit.
+inline Rational rational_of(long double x)
+{
+  Rational::Integer h[2] = {1, 0}, k[2] = {0, 1};    // convergents of the continued fraction
+  for (long double rest = x;;) {
+    const auto whole = (Rational::Integer) std::floor(rest);
+    const Rational::Integer next_h = whole * h[0] + h[1], next_k = whole * k[0] + k[1];
+    h[1] = h[0], k[1] = k[0], h[0] = next_h, k[0] = next_k;
+    if (std::fabs((long double) h[0] / (long double) k[0] - x) <= 1e-18L * std::fabs(x))
+      return {h[0], k[0]};
+    rest = 1.0L / (rest - (long double) whole);
+  }
+}
 
 }    // namespace Oracle

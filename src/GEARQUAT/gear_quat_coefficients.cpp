@@ -3,9 +3,14 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Tuned coefficients of the corrector, for formulation momentum.
+/* Gear's coefficients for any number of values follow from the polynomial P_n(s) = (1 + s)(1 + s/2)...
+   (1 + s/n) and the weights gamma_k of Adams and Moulton, 1/2 1/12 1/24 19/720 3/160 ...  (their
+   magnitudes).
+   Source: C. W. Gear, "Numerical Initial Value Problems in Ordinary Differential Equations" (1971);
+   for 5 and 6 values Pratt & Bin Mohamad Zaini, Tables 1 and 2 (beta_2 = 1: the printed 4 is a
+   misprint).
 
-   Gear's coefficients put every spurious root of the corrector at zero.  The order does not require
+Tuned coefficients, for formulation momentum: Gear's coefficients put every spurious root of the corrector at zero.  The order does not require
    this: of the N coefficients the order determines c_0 and c_1, and c_2 is 1 by definition.  The
    other coefficients, the tail, are free.  The table below has tails optimized for rigid bodies, as
    decimals; c_1 and, where it is not given, c_0 are computed from them.
@@ -38,31 +43,63 @@
 
    Gear's c_0 and c_1 are the solutions for Gear's tails (tests/unit/test_tuned.cpp). */
 
-#ifndef GEAR_QUAT_TUNED_H
-#define GEAR_QUAT_TUNED_H
+#include "gear_quat_coefficients.h"
 
-#include "gear_quat_history.h"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <initializer_list>
-#include <limits>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
-namespace LAMMPS_NS::GearQuat {
+using namespace LAMMPS_NS;
+using namespace GearQuat;
 
-// ---------------------------------------------------------------------------------------------
-// order conditions
-// ---------------------------------------------------------------------------------------------
+using Coefficients = std::vector<long double>;
+
+/* ----------------------------------------------------------------------
+   Gear's coefficients
+------------------------------------------------------------------------- */
+
+long double GearQuat::adams_moulton(int k)
+{
+  Coefficients signed_weight = {1.0L};
+  for (int m = 1; m <= k; ++m) {
+    long double sum = 0.0L;
+    for (int i = 0; i < m; ++i) sum -= signed_weight[i] / (m + 1 - i);
+    signed_weight.push_back(sum);
+  }
+  return -signed_weight[k];
+}
+
+Coefficients GearQuat::first_order_coefficients(int values)
+{
+  Coefficients p = {1.0L};    // P_(N-2)
+  for (int i = 1; i <= values - 2; ++i) {
+    p.push_back(0.0L);
+    for (int j = i; j > 0; --j) p[j] += p[j - 1] / i;
+  }
+  Coefficients c = {1.0L};
+  for (int k = 1; k < values; ++k) c[0] -= adams_moulton(k);
+  for (int j = 0; j < values - 1; ++j) c.push_back(p[j] / (j + 1));
+  return c;
+}
+
+Coefficients GearQuat::second_order_coefficients(int values, bool velocity_c0)
+{
+  const Coefficients a = first_order_coefficients(values - 1);
+  Coefficients c = {2 * (velocity_c0 ? values - 1 : values - 2) * adams_moulton(values - 1)};
+  for (int j = 0; j < values - 1; ++j) c.push_back(2 * a[j] / (j + 1));
+  return c;
+}
+
+/* ----------------------------------------------------------------------
+   order conditions
+------------------------------------------------------------------------- */
+
+namespace {
 
 /// Steady deviations of the rows of a second-order equation.
 class SteadyDeviations {
  public:
   /// c: N coefficients, used from row 2 on.
-  explicit SteadyDeviations(const std::vector<long double> &c) :
+  explicit SteadyDeviations(const Coefficients &c) :
       n((int) c.size()), residual(n / c[n - 1]), e(descend(c, n, residual, {}))
   {
   }
@@ -71,14 +108,14 @@ class SteadyDeviations {
   long double consistent() const { return (n - sum(1, e)) / residual; }
 
   /// Deviation of row 1 per step for y_(N+1) = 1; c: with c_1.
-  long double growth(const std::vector<long double> &c) const
+  long double growth(const Coefficients &c) const
   {
     const long double s = (binomial(n + 1, n - 1) + (n + 1) * e[n - 1]) / c[n - 1];
     return sum(1, descend(c, n + 1, s, e)) - (n + 1) + c[1] * s;
   }
 
   /// c_0 by Eq. (2); c: with c_1.
-  long double position_c0(const std::vector<long double> &c) const
+  long double position_c0(const Coefficients &c) const
   {
     return (1.0L - sum(0, e) - growth(c) / (n + 1)) / residual;
   }
@@ -97,10 +134,9 @@ class SteadyDeviations {
   }
 
  private:
-  using Rows = std::vector<long double>;
   int n;
   long double residual;
-  Rows e;
+  Coefficients e;
 
   static long double binomial(int m, int k)
   {
@@ -110,17 +146,18 @@ class SteadyDeviations {
   }
 
   /// Sum over k > j of binom(k, j) d_k.
-  long double sum(int j, const Rows &d) const
+  long double sum(int j, const Coefficients &d) const
   {
     long double total = 0.0L;
     for (int k = n - 1; k > j; --k) total += binomial(k, j) * d[k];
     return total;
   }
 
-  /// Rows N-2 ... 2 for an exact solution of this degree; slope: e if deviations grow, or empty.
-  Rows descend(const Rows &c, int degree, long double residual, const Rows &slope) const
+  /// Coefficients N-2 ... 2 for an exact solution of this degree; slope: e if deviations grow, or empty.
+  Coefficients descend(const Coefficients &c, int degree, long double residual,
+                       const Coefficients &slope) const
   {
-    Rows d(n, 0.0L);
+    Coefficients d(n, 0.0L);
     for (int j = n - 2; j >= 2; --j) {
       const long double growth = slope.empty() ? 0.0L : degree * slope[j];
       d[j + 1] = (binomial(degree, j) - c[j] * residual + growth - sum(j, d)) / (j + 1);
@@ -129,33 +166,23 @@ class SteadyDeviations {
   }
 };
 
-// ---------------------------------------------------------------------------------------------
-// the table
-// ---------------------------------------------------------------------------------------------
+}    // namespace
 
-/// The free coefficients for a number of values.
-struct TunedSet {
-  static constexpr long double SOLVED = std::numeric_limits<long double>::quiet_NaN();
+/* ----------------------------------------------------------------------
+   tuned coefficients
+------------------------------------------------------------------------- */
 
-  std::vector<long double> tail;    ///< c_3 ... c_(N-1)
-  long double c0 = SOLVED;          ///< if it is not determined by the order
+Coefficients TunedSet::coefficients() const
+{
+  Coefficients c = {0.0L, 0.0L, 1.0L};
+  c.insert(c.end(), tail.begin(), tail.end());
+  const SteadyDeviations deviations(c);
+  c[1] = deviations.consistent();
+  c[0] = solves_c0() ? deviations.position_c0(c) : c0;
+  return c;
+}
 
-  bool solves_c0() const { return std::isnan(c0); }
-  int values() const { return (int) tail.size() + 3; }
-
-  /// All N.
-  std::vector<long double> coefficients() const
-  {
-    std::vector<long double> c = {0.0L, 0.0L, 1.0L};
-    c.insert(c.end(), tail.begin(), tail.end());
-    const SteadyDeviations deviations(c);
-    c[1] = deviations.consistent();
-    c[0] = solves_c0() ? deviations.position_c0(c) : c0;
-    return c;
-  }
-};
-
-inline const std::vector<TunedSet> &tuned_sets()
+const std::vector<TunedSet> &GearQuat::tuned_sets()
 {
   static const std::vector<TunedSet> sets = {
       {{0.518283853L}},
@@ -176,88 +203,50 @@ inline const std::vector<TunedSet> &tuned_sets()
   return sets;
 }
 
-/// The tuned set, null if there is none for this number of values.
-inline const TunedSet *tuned_set(int values)
+const TunedSet *GearQuat::tuned_set(int values)
 {
   for (const TunedSet &set : tuned_sets())
     if (set.values() == values) return &set;
   return nullptr;
 }
 
-/// Three values have the coefficients of velocity Verlet, c = (0, 1, 1).  Where velocities are read
-/// with the forces, they are then those of half a step before.  One remembered load has as many rows,
-/// and is another method.
-constexpr int VERLET = 3;
-inline bool is_verlet(const Scheme &scheme)
-{
-  return !scheme.first() && !scheme.remembers && scheme.values() == VERLET;
-}
-
 /// With a separate c_0, positions have an error of h^(N-1) that is bounded in time.
-inline int Scheme::order() const
+int Scheme::order() const
 {
   if (!tuned) return (velocity_c0 ? values() - 1 : values()) | 1;
   const TunedSet *set = tuned_set(values());
   return set && !set->solves_c0() ? values() - 1 : values();
 }
 
-// ---------------------------------------------------------------------------------------------
-// coefficients for the integrator
-// ---------------------------------------------------------------------------------------------
+/* ----------------------------------------------------------------------
+   coefficients for the integrator
+------------------------------------------------------------------------- */
 
-/// Coefficients of all columns, and the weight of residuals in the local error.
-struct CorrectorCoefficients {
-  using Array = std::array<double, MOST_ROWS>;
-
-  Array c = {};            ///< first: of all columns, which have equations of the first order
-  double weight2 = 0.0;    ///< of the residuals of positions and quaternions, squared
-  double moment = 0.0;     ///< momentum: see SteadyDeviations
-
-  CorrectorCoefficients() = default;
-  /// Throws std::domain_error if the scheme is tuned and has a number of values without a tuned
-  /// set.
-  explicit CorrectorCoefficients(const Scheme &scheme)
-  {
-    const double weight = is_verlet(scheme) ? fill_verlet()
-        : scheme.tuned                      ? fill_tuned(scheme)
-                                            : fill_gear(scheme);
-    weight2 = weight * weight;
-    if (!scheme.momentum() || is_verlet(scheme)) return;
-    const std::vector<long double> exact(c.begin(), c.begin() + scheme.values());
-    moment = double(SteadyDeviations(exact).moment(exact[0]));
-  }
-
- private:
-  // these return the weight of the residual in the local error
-
-  double fill_verlet()
-  {
-    c[1] = c[2] = 1.0;
-    return 1.0 / 3.0;
-  }
-
-  double fill_gear(const Scheme &scheme)
-  {
-    const int n = scheme.values();
-    const Fractions exact = scheme.first() ? first_order_coefficients(n)
-                                           : second_order_coefficients(n, scheme.velocity_c0);
-    for (int j = 0; j < n; ++j) c[j] = exact[j].value();
-    return (scheme.first() ? first_order_error_weight(n) : second_order_error_weight(n)).value();
-  }
-
-  double fill_tuned(const Scheme &scheme)
-  {
-    const int n = scheme.values();
+CorrectorCoefficients::CorrectorCoefficients(const Scheme &scheme)
+{
+  const int n = scheme.values();
+  Coefficients exact;
+  long double weight;    // of the residual in the local error
+  if (scheme.is_verlet()) {
+    exact = {0.0L, 1.0L, 1.0L};
+    weight = 1.0L / 3.0L;
+  } else if (scheme.tuned) {
     const TunedSet *set = scheme.momentum() ? tuned_set(n) : nullptr;
     if (!set)
       throw std::domain_error(std::string("formulation ") + word_of(scheme.formulation) +
                               " has no tuned coefficients for " + std::to_string(n) + " values");
-    const std::vector<long double> exact = set->coefficients();
-    for (int j = 0; j < n; ++j) c[j] = double(exact[j]);
-    return double(std::fabs(SteadyDeviations(exact).local_error(exact[0])));
+    exact = set->coefficients();
+    weight = std::fabs(SteadyDeviations(exact).local_error(exact[0]));
+  } else if (scheme.first()) {    // the corrector of the next lower order: c_0(N - 1) - c_0(N)
+    exact = first_order_coefficients(n);
+    weight = adams_moulton(n - 1);
+  } else {
+    exact = second_order_coefficients(n, scheme.velocity_c0);
+    weight = 2.0L * adams_moulton(n - 1);
   }
-};
-
-}    // namespace LAMMPS_NS::GearQuat
-
-#endif
+  for (int j = 0; j < n; ++j) c[j] = double(exact[j]);
+  weight2 = double(weight) * double(weight);
+  if (!scheme.momentum() || scheme.is_verlet()) return;
+  const Coefficients rounded(c.begin(), c.begin() + n);
+  moment = double(SteadyDeviations(rounded).moment(rounded[0]));
+}
