@@ -491,8 +491,8 @@ void Motion::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choi
   const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
   utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
                  choice.scheme.is_verlet() ? " (velocity Verlet)"
-                     : other_corrector    ? " and corrector gear"
-                                          : "",
+                     : other_corrector     ? " and corrector gear"
+                                           : "",
                  why);
 }
 
