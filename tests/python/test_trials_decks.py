@@ -123,6 +123,17 @@ def test_trials_of_a_deck_whose_step_follows_the_error(make_deck):
     assert np.array_equal(own.positions, gear.positions)
 
 
+def test_keyword_tolerance_is_tried_where_few_bodies_move(make_deck):
+    with Deck(make_deck(**FOR_GEAR), [("style", "gear/quat")]) as deck:
+        exact = deck.run_to("values 9 compensate yes", 0.4, 1600)
+        trials = {eps: deck.run_adaptive(eps, 0.4) for eps in (1e-5, 1e-7, 1e-9)}
+        costs = cost.measure(deck, cost.Budget(30.0), errors=[1e-4], time=0.4, timings=1)
+    errors = {eps: np.abs(sites - exact.positions[-1]).max() for eps, (_, sites, _) in trials.items()}
+    assert all(error < 10 * eps for eps, error in errors.items()) and errors[1e-9] < 0.1 * max(errors.values())
+    assert trials[1e-5][0] < trials[1e-7][0] < trials[1e-9][0] < 1600
+    assert any(note.startswith("with keyword tolerance") and "1.0e-04 takes" in note for note in costs.notes)
+
+
 def test_trials_of_an_isokinetic_deck(make_deck):
     line = FIX.replace("${style}", "gear/quat") + " formulation first isokinetic total"
     with Deck(make_deck(**{FIX: line}, **FOR_GEAR)) as deck:

@@ -77,7 +77,8 @@ def cost(scene, errors, time, norm, bound, budget, timings, tries, out):
     rigid/nve/small.  It is followed up to its run; runs before that one are executed once, and all
     trials start from their end.  Short trials over time steps and orders are compared with a finer
     one and with the deck's own fix, which is recommended where no other is faster.  Errors are judged only as
-    far as the finest trial is confirmed by a second one of another formulation.
+    far as the finest trial is confirmed by a second one of another formulation.  For few bodies, notes compare the
+    evaluations of the forces with those of keyword tolerance, whose steps follow the error.
 
     Trajectories of a liquid diverge before the end of the run.  Then, unless --error or --time is given, long runs
     are compared instead: by energy drift and by the temperatures of translation and rotation.  A step whose energy

@@ -9,6 +9,7 @@
 4. The same trials several times, interleaved, for their wall time: the smallest counts.
 5. The recommended trial for as long as the budget allows, for its energy drift.  If the drift is above
    its bound, the next cheapest trial follows.
+6. Where few bodies move, keyword tolerance, whose evaluations of the forces are compared with those of that trial.
 
 Where trajectories diverge before the end of the deck's run, ``sampling`` takes the place of all but the first.
 """
@@ -46,6 +47,8 @@ PATIENCE = 30.0  # seconds by which any trial may exceed the expected time
 SHARE_BEFORE = 0.8
 #: trials at interpolated steps, for each error and method
 ATTEMPTS = 3
+#: values of keyword tolerance for each error: each is smaller by this factor, the first relative to the error itself
+TOLERANCES, TIGHTER = 5, 0.3
 #: another fix pays off if the fix of the deck takes longer by this factor
 WORTHWHILE = 1.05
 
@@ -378,6 +381,32 @@ class Inquiry:
                 long |= {new[0]} if part == 1.0 else set()
 
 
+    # --- 6. keyword tolerance ---------------------------------------------------------------------------
+    def with_tolerance(self, costs):
+        """Notes about keyword tolerance, where few bodies move: evaluations of the forces for each error of ``costs``."""
+        notes = []
+        for row in costs.rows:
+            if len(self.deck.scene.bodies) >= MANY or row.choice is None:
+                continue
+            eps, steps = row.error, row.choice.evaluations + row.choice.start_evaluations
+            for _ in range(TOLERANCES):
+                eps *= TIGHTER
+                self.budget.say(f"gear/quat tolerance {eps:.1g} length")
+                try:
+                    count, *frame = self.deck.run_adaptive(eps, costs.end, max(self.budget.left(), 0.0))
+                except (DeckError, LammpsError):
+                    return notes
+                finally:
+                    self.budget.spent()
+                if self.errors(*frame, *self.truth)[self.norm] + costs.doubt <= row.error:
+                    notes.append(
+                        f"with keyword tolerance {eps:.2g} length, an error of {row.error:.1e} takes {count} evaluations"
+                        f" of the forces; with the time step below it takes {round(steps)}"
+                    )
+                    break
+        return notes
+
+
 def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bound=BOUND):
     """Costs of a Deck, or its sampling.Sampling where many trajectories diverge and neither errors nor a time are given.
 
@@ -423,6 +452,7 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
     # the others for the picture, if they are quick
     inquiry.repeat([trial for trial, _ in costs.trials], min(timings, 2), (1.0 - SHARE_PICTURE) * budget.left())
     inquiry.choose(costs, errors)
+    costs.notes += inquiry.with_tolerance(costs)
     costs.notes += known_until(reference.time, doubt, [e for e in errors if e not in judged])
     costs.notes += warnings_of([reference, confirmation, *(trial for trial, _ in costs.trials)])
     return costs

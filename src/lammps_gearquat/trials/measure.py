@@ -284,3 +284,18 @@ class Deck:
     def run_to(self, keywords, end, steps, samples=1, timeout=None):
         """Trial of ``steps`` steps, a multiple of ``samples``, to the time ``end``."""
         return self.run(keywords, [steps // samples] * samples, end / steps, timeout)
+
+    def run_adaptive(self, eps, end, timeout=None):
+        """(evaluations of the forces, sites, centers) at the time ``end`` with keyword tolerance ``eps``, a length.
+
+        Raises DeckError if fix gear/quat moves the bodies in several fixes or with other equations of motion, and
+        LammpsError if LAMMPS fails.
+        """
+        if len(self.base) > 1:
+            raise script.DeckError("keyword tolerance in one of several fixes")
+        lines = {line.id: line.with_tolerance(eps) for line in self.base}
+        outcomes = self._ask(
+            process.adaptive, timeout, start=self.start, lines=lines, need_map=self.map_missing, end=end
+        )
+        positions = self.scene.of_sites([outcome.samples[0] for outcome in outcomes])
+        return outcomes[0].evaluations, positions, self.scene.centers(positions[None])[0]

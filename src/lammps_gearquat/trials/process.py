@@ -32,6 +32,10 @@ BODIES = "gearquat_bodies"
 ENERGIES = ("gearquat_conserved", "gearquat_kinetic", "gearquat_translation", "gearquat_rotation")
 #: properties of atoms that rotate by themselves
 ROTATING = ("omega_flag", "angmom_flag")
+#: index in the vector of fix gear/quat of the number of steps that keyword tolerance repeated
+REPEATED = 15
+#: more than any trial takes
+MOST_STEPS = 10**8
 COMPUTE_SITES = f"compute {SITES} all property/atom id xu yu zu"
 #: number of steps beyond the end of the followed deck, for a test of the checkpoint
 TEST_STEPS = 10
@@ -212,6 +216,31 @@ def _end_with_caller(file):
     watch.register(file, getattr(select, "POLLRDHUP", 0))  # POLLHUP is always reported
     watch.poll()
     os._exit(1)
+
+
+def adaptive(deck, variables, log, start, lines, need_map, end, tell):
+    """TrialPart of a trial with keyword tolerance in ``lines``; a step ends at the time ``end`` after the beginning."""
+    from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR
+
+    lammps = open_lammps(deck, variables, log)
+    try:
+        replay(lammps, Path(log).parent, start, lines, need_map)
+        now, first = lammps.get_thermo("time"), lammps.extract_global("ntimestep")
+        for line in lines.values():
+            lammps.commands_list([f"unfix {line.id}", f"{line.text()} every/time {now + end:.17g}"])
+        lammps.commands_list(
+            [
+                *(COMPUTE_SITES, "thermo 0", "variable gearquat_time equal time"),
+                f"fix gearquat_end all halt 1 v_gearquat_time >= {now + (1.0 - 1e-9) * end:.17g} error continue",
+                f"run {MOST_STEPS}",
+            ]
+        )
+        steps = lammps.extract_global("ntimestep") - first
+        for line in lines.values():
+            steps += int(lammps.extract_fix(line.id, LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, REPEATED))
+        return TrialPart(lammps.extract_setting("world_rank"), [_sites(lammps)], evaluations=1 + steps)
+    finally:
+        lammps.close()
 
 
 def serve(address):

@@ -200,6 +200,16 @@ class FixLine:
         kept = self.only(*_PHYSICAL)
         return replace(kept, keywords=pairs(text) + kept.keywords)
 
+    def with_tolerance(self, eps):
+        """This line with keyword tolerance, an error of ``eps`` as a length, instead of keywords about integration.
+
+        Raises DeckError if its equations of motion do not allow steps of changing length.
+        """
+        if self.isokinetic or self.has_chains:
+            raise DeckError(f"fix {self.id}: keyword tolerance is not tried with a thermostat")
+        kept = self.only(*_PHYSICAL)
+        return replace(kept, keywords=(("tolerance", (f"{eps:.2g}", "length")), *kept.keywords))
+
     def numerics(self, text):
         """The keywords about integration of this line as text, updated by the keywords in ``text``.
 
@@ -293,7 +303,7 @@ def for_trials(line):
         return line, []
     return kept, [
         f"fix {line.id} {line.style}: {', '.join(left_out)} left out, because trials have steps of equal"
-        " length; the cost of steps that change is not measured"
+        " length"
     ]
 
 

@@ -65,7 +65,7 @@ class TrialPart:
 
     ``seconds``, wall time of the steps; ``start_seconds``, of the set-up and of the start of the
     fix; ``start_evaluations``, evaluations of the forces that the start of fix gear/quat took;
-    ``warnings``, lines of the log that matter.
+    ``warnings``, lines of the log that matter; ``evaluations``, of the forces in the steps, if steps follow the error.
     """
 
     rank: int
@@ -75,6 +75,7 @@ class TrialPart:
     start_evaluations: int = 0
     warnings: tuple = ()
     energies: list = field(default_factory=list)
+    evaluations: int = 0
 
 
 def _drain(connection):
