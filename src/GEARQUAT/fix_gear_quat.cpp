@@ -44,9 +44,8 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
          [this](int vflag, double **f) {
            tally_virial(vflag, f);
          }),
-    motion(lmp, this, args, fleet, bodies, ownership, sites, other_fixes, step),
     driven_box(lmp, this, args, bodies, ownership, sites, other_fixes, step),
-    minimization(lmp, bodies, ownership, sites), restarts(lmp, this, bodies, ownership, motion),
+    minimization(lmp, bodies, ownership, sites), restarts(lmp, this, bodies, ownership, step),
     respa(lmp), table(lmp, bodies, sites), sums(lmp, bodies),
     extracts(lmp, bodies, ownership, sums, args.mol)
 {
@@ -76,7 +75,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   maxexchange = ownership.max_exchange();
   comm_forward = ownership.max_forward();
   comm_reverse = Ownership::MOST_NUMBERS;
-  size_vector = Sums::ELEMENTS + motion.elements();
+  size_vector = Sums::ELEMENTS + step.elements();
 
   if (group->dynamic[igroup])
     error->all(
@@ -86,14 +85,14 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   create_bodies();
   if (bodies.number() == 0 && args.mol.empty())
     error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
-  motion.meet_bodies();
+  step.meet_bodies();
   atoms_are_free = over_ranks(MPI_MAX, (int) ownership.had_free_atoms(), world);
   count_rows();
   size_array_rows_variable = !args.mol.empty();    // rows may be requested before they exist
 
   // callbacks last, because LAMMPS would call a fix whose constructor has failed
   extlist = new int[size_vector]{1, 1};
-  for (int n = 0; n < motion.elements(); ++n) extlist[Sums::ELEMENTS + n] = motion.extensive(n);
+  for (int n = 0; n < step.elements(); ++n) extlist[Sums::ELEMENTS + n] = step.extensive(n);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
   if (comm->me == 0)
@@ -132,9 +131,7 @@ void FixGearQuat::meet_fleet()
 {
   fleet.members.clear();
   for (auto *other : modify->get_fix_list())
-    if (auto *same = dynamic_cast<FixGearQuat *>(other))
-      fleet.members.push_back({same, &same->motion, &same->ownership,
-                               same->step.tolerance != nullptr, same->args.scheme.tuned});
+    if (auto *same = dynamic_cast<FixGearQuat *>(other)) fleet.members.push_back(&same->step);
 }
 
 void FixGearQuat::init()
@@ -154,12 +151,12 @@ void FixGearQuat::init()
                "Fix gear/quat temp cannot be used with fix_modify energy yes: the scalar has the "
                "energy of the thermostat, too, which thermo keyword econserve adds; leave it out");
   other_fixes.init();
-  if (!reported) {
+  if (!step.had_run()) {
     stated = read_stated(lmp, args.mol);
     warn_of_partial_molecules(lmp, this, args, fleet, ownership);
   }
-  motion.init();
-  step.expect_readers(!reader_of_predicted_velocities(lmp, this).empty());
+  step.init();
+  step.velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
   sites.expect_forces(makes_forces(lmp, this) || other_fixes.any_taken());
 }
 
@@ -180,9 +177,9 @@ void FixGearQuat::setup_pre_exchange()
   for (int i = 0; atom->vest && i < atom->nlocal; ++i)    // no fix extrapolates the first ones
     if (ownership.in_body(i)) std::copy_n(atom->v[i], 3, atom->vest[i]);
   if (ownership.follow_box())
-    motion.forget("Fix gear/quat: the box was remapped since the last run; histories are rebuilt");
+    step.forget("Fix gear/quat: the box was remapped since the last run; histories are rebuilt");
   if (step.coupling && !step.coupling->knows_box())
-    motion.forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
+    step.forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
   driven_box.begin_setup();
 }
 
@@ -193,9 +190,10 @@ void FixGearQuat::setup_pre_neighbor()
   ownership.choose_large();
   update_bodies();
   driven_box.follow_images();
-  if (met_atoms && !minimization.is_on()) motion.take_velocities(update->ntimestep, false);
+  const bool defined = step.phase == Phase::DEFINED;
+  if (!defined && !minimization.is_on()) step.take_velocities(update->ntimestep, false);
   const bool from_atoms = args.infile.empty() && !any_differs(stated);
-  const bool takes_over = from_atoms && (args.reinit || !met_atoms);
+  const bool takes_over = from_atoms && (args.reinit || defined);
   const Sites::Changes found = sites.changes();
   if (!takes_over && !minimization.is_on() && found.moved && comm->me == 0)
     error->warning(FLERR,
@@ -209,34 +207,32 @@ void FixGearQuat::setup_pre_neighbor()
     ownership.recreate();
     driven_box.note_images();
     update_bodies();
-    motion.forget("Fix gear/quat: atoms were changed since the last run; bodies are rebuilt from "
-                  "them");
+    step.forget("Fix gear/quat: atoms were changed since the last run; bodies are rebuilt from "
+                "them");
   }
   ownership.note_box();
   if (!told_of_ids) told_of_ids = warn_of_molecule_ids(lmp, this, args, ownership);
-  motion.impose_masks();
-  met_atoms = true;
-  step.note_comparison();
+  step.impose_masks();
+  if (defined) step.phase = Phase::COMPARED;
   count_rows();
 }
 
 /// Atoms are changed only after all checks that may end the run.
 void FixGearQuat::setup(int vflag)
 {
-  step.expect_readers_at_end(readers_at_end(lmp, this));
+  const bool first = !step.had_run();
+  step.readers = readers_at_end(lmp, this);
   ownership.spread_states();
-  if (!reported) other_fixes.check_gravity();
+  if (first) other_fixes.check_gravity();
   step.gather(atom->f, atom->torque);
   driven_box.follow();
-  motion.begin_run();
+  step.begin_run();
   sites.place_velocities();
   bodies.forget_work();    // positions belong to the corrected poses
   tally_virial(vflag, atom->f);
   show_bodies();
-  motion_acts = true;
-  if (!reported) warn_of_excluded_images(lmp, this, bodies, ownership, sites);
-  if (!reported) report_scene(lmp, this, args, fleet, bodies, ownership, sites);
-  reported = true;
+  if (first) warn_of_excluded_images(lmp, this, bodies, ownership, sites);
+  if (first) report_scene(lmp, this, args, fleet, bodies, ownership, sites);
   atoms_are_free = false;
 }
 
@@ -286,15 +282,10 @@ void FixGearQuat::final_integrate()
   end_step(atom->f, atom->torque);
 }
 
-/// f, torque: from all pair styles and fixes in the previous step.  The first fix gear/quat in the
-/// list starts the bodies of all fixes gear/quat.
+/// f, torque: from all pair styles and fixes in the previous step.
 void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
-  if (motion_acts) {
-    motion.take_velocities(update->ntimestep - 1, true);
-    if (motion.begins_steps()) Motion::begin_steps(fleet, f, torque);
-    motion_acts = other_fixes.any_taken();
-  }
+  step.start(f, torque);
   driven_box.begin_step();
   sites.advance_densities(update->dt);
   step.begin(vflag, f);
@@ -304,7 +295,6 @@ void FixGearQuat::end_step(double **f, double **torque)
 {
   step.end(f, torque);
   sites.advance_densities(update->dt);
-  motion.look_at_vibrations();
   driven_box.end_step();
   if (box_change != NO_BOX_CHANGE) ownership.note_box();
   if (step.shows_local_data()) show_bodies();
@@ -324,6 +314,7 @@ void FixGearQuat::post_run()
     end_minimization();
     return;
   }
+  step.end_run();
   driven_box.end_run();
 }
 
@@ -346,7 +337,7 @@ void FixGearQuat::tally_virial(int vflag, double **f)
 
 void FixGearQuat::min_setup(int vflag)
 {
-  motion.forget("Fix gear/quat: minimize moves the bodies; histories are rebuilt");
+  step.forget("Fix gear/quat: minimize moves the bodies; histories are rebuilt");
   ownership.spread_states();
   minimization.measure();
   min_post_force(vflag);
@@ -425,7 +416,7 @@ void FixGearQuat::end_minimization()
 void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
 {
   if (!respa.outermost(ilevel)) return;
-  if (motion.begins_steps()) respa.sum_present();
+  if (step.phase == Phase::SET_UP) respa.sum_present();
   begin_step(vflag, respa.forces(), respa.torques());
 }
 
@@ -446,8 +437,8 @@ double FixGearQuat::compute_vector(int n)
                "Fix gear/quat {}: output reads element {} of a vector of {}; the fix has other "
                "keywords than when the output was defined: define it anew",
                id, n + 1, size_vector);
-  if (n >= Sums::ELEMENTS) return motion.element(n - Sums::ELEMENTS);
-  return sums.element(n, step.started ? step.present_integrator() : nullptr);
+  if (n >= Sums::ELEMENTS) return step.element(n - Sums::ELEMENTS);
+  return sums.element(n, step.present_integrator());
 }
 
 /// The command velocity create gives every atom its own velocity, of which bodies adopt the rigid
@@ -524,7 +515,7 @@ void FixGearQuat::write_restart(FILE *fp)
 
 void FixGearQuat::write_restart_file(const char *file)
 {
-  if (!met_atoms) return;    // the user may still change the atoms
+  if (step.phase == Phase::DEFINED) return;    // the user may still change the atoms
   show_bodies();
   restarts.write_bodies(fmt::format("{}.{}.gear_quat", file, id), array_local);
 }
@@ -534,6 +525,8 @@ void FixGearQuat::resume()
 {
   if (!restarts.was_read()) return;
   const bool others_come = !args.mol.empty();    // insertions may come from outside of the group
-  met_atoms = restarts.resume(others_come ? groupbit : 0);
-  if (!met_atoms) create_bodies();
+  if (restarts.resume(others_come ? groupbit : 0))
+    step.phase = Phase::COMPARED;
+  else
+    create_bodies();
 }

@@ -25,7 +25,6 @@ FixStyle(gear/quat,FixGearQuat);
 #include "gear_quat_fixes.h"
 #include "gear_quat_forces.h"
 #include "gear_quat_minimize.h"
-#include "gear_quat_motion.h"
 #include "gear_quat_outputs.h"
 #include "gear_quat_restart.h"
 #include "gear_quat_step.h"
@@ -66,7 +65,7 @@ class FixGearQuat : public Fix {
   int min_dof() override;
   double max_alpha(double *) override;
 
-  double compute_scalar() override { return sums.energy_correction() + motion.energy(); }
+  double compute_scalar() override { return sums.energy_correction() + step.energy(); }
   double compute_vector(int) override;
   double compute_array(int i, int j) override { return table.global(i, j); }
   bigint dof(int) override;
@@ -118,7 +117,6 @@ class FixGearQuat : public Fix {
   GearQuat::Sites sites;
   GearQuat::OtherFixes other_fixes;
   GearQuat::Step step;
-  GearQuat::Motion motion;
   GearQuat::DrivenBox driven_box;
   GearQuat::Minimization minimization;
   GearQuat::Restart restarts;
@@ -129,14 +127,11 @@ class FixGearQuat : public Fix {
 
   std::vector<GearQuat::StatedMolecule> stated;    // one for each molecule of the template
 
-  bool met_atoms = false;         // an earlier run has compared bodies and atoms
   bool told_of_ids = false;       ///< a warning about changed molecule IDs was given
   int told_of_groups = 0;         ///< their bits: a warning about parts of bodies was given
-  bool reported = false;          // the report was printed
   bool atoms_are_free = false;    // their velocities are not yet those of bodies
   bool min_projected = false;     // forces were projected before a minimization begins
   int min_vflag = 0;              // vflag of the current evaluation in a minimization
-  bool motion_acts = true;        // the next step begins with actions of Motion
 
   void create_bodies();
   void update_bodies();

@@ -232,7 +232,7 @@ void DrivenBox::follow(const double *h, const double *corner)
 void DrivenBox::pass_faces(int ibody, const double *images)
 {
   const auto *rates = sites.rates_of_faces().data();
-  if (step.is_within()) rates = cell ? cell->rate_of_faces().m.data() : domain->h_rate;
+  if (step.phase == Phase::BEGUN) rates = cell ? cell->rate_of_faces().m.data() : domain->h_rate;
   double away[2][3], periods[3], velocity[3];
   through(ownership.box().data(), bodies.body_at(ibody).image.data(), away[0]);
   through(domain->h, images, away[1]);

@@ -24,9 +24,9 @@ using namespace LAMMPS_NS;
 using namespace GearQuat;
 
 Restart::Restart(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, Ownership &ownership,
-                 Motion &motion) :
+                 Step &step) :
     Pointers(lmp),
-    fix(fix), bodies(bodies), ownership(ownership), motion(motion), waiting(false), place(0)
+    fix(fix), bodies(bodies), ownership(ownership), step(step), waiting(false), place(0)
 {
 }
 
@@ -35,7 +35,7 @@ void Restart::write(FILE *fp) const
   Fields numbers;
   double records = ownership.extended().has_records(), all = (double) atom->natoms;
   numbers(records, all);
-  motion.write(numbers);
+  step.write(numbers);
   const double head[] = {MAGIC, FORMAT, (double) numbers.numbers().size()};
   const int size = (int) (sizeof(head) + numbers.numbers().size() * sizeof(double));
   fwrite(&size, sizeof(int), 1, fp);
@@ -99,7 +99,7 @@ bool Restart::resume(int group)
 {
   waiting = false;
   using Resumed = Ownership::Resumed;
-  motion.adopt_scheme(file);
+  step.adopt_scheme(file);
   const Resumed found = ownership.resume(packed_atoms(), extended != 0.0, group);
   if (found == Resumed::NONE) {
     if (comm->me == 0)
@@ -108,12 +108,12 @@ bool Restart::resume(int group)
                      "as in the restart file; they are rebuilt from their atoms");
     return false;
   }
-  if (!motion.read(file))
+  if (!step.read(file))
     error->all(FLERR, "Fix gear/quat: the data of fix {} in the restart file are damaged", fix->id);
   if (found == Resumed::FEWER)    // the motion of the others contributes to derivatives of forces
-    motion.forget(fmt::format("Fix gear/quat {}: some bodies of the restart file are in no body of "
-                              "this command; histories are rebuilt",
-                              fix->id));
+    step.forget(fmt::format("Fix gear/quat {}: some bodies of the restart file are in no body of "
+                            "this command; histories are rebuilt",
+                            fix->id));
   return true;
 }
 

@@ -13,7 +13,7 @@
 #ifndef LMP_GEAR_QUAT_RESTART_H
 #define LMP_GEAR_QUAT_RESTART_H
 
-#include "gear_quat_motion.h"
+#include "gear_quat_step.h"
 
 #include <cstdio>
 
@@ -21,7 +21,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class Restart : protected Pointers {
  public:
-  Restart(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, Ownership &ownership, Motion &motion);
+  Restart(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, Ownership &ownership, Step &step);
 
   void write(FILE *fp) const;
   /// Ends the run if a release with another format has written the file.
@@ -49,7 +49,7 @@ class Restart : protected Pointers {
   const Fix *fix;
   const Bodies &bodies;
   Ownership &ownership;
-  Motion &motion;
+  Step &step;
 
   Fields file;                            ///< the numbers that have not been read yet
   double extended = 0.0, natoms = 0.0;    ///< of the file: are there extended sites; all atoms

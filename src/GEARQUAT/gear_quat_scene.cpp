@@ -6,7 +6,7 @@
 #include "gear_quat_scene.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_fleet.h"
+#include "gear_quat_step.h"
 #include "gear_quat_forces.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"

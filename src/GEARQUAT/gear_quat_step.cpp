@@ -7,12 +7,19 @@
 
 #include "gear_quat_barostat.h"
 #include "gear_quat_isokinetic.h"
-#include "gear_quat_start.h"
+#include "gear_quat_known_styles.h"
+#include "gear_quat_ranks.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "modify.h"
 #include "output.h"
 #include "update.h"
+#include "utils.h"
 
 #include <algorithm>
 #include <array>
@@ -22,6 +29,23 @@
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
+
+// Histories start again if the step becomes shorter than this part of the last step: the errors in
+// their higher rows are due to the long step.  They also start again if the step becomes longer by
+// more than this factor: the errors grow with powers of the ratio, and may be as large as the
+// motion.
+
+static constexpr double SHORTER = 0.49, LONGER = 2.05;
+
+// Forces at a corrected pose differ from forces at the predicted pose by the effect of the
+// correction, so at a stable step their residual is smaller than the last residual.  If a residual
+// exceeds the last residual by OTHER_FORCES, or by OTHER_NOISE where forces cannot be evaluated
+// again, the forces have changed since the last step.  Residuals explained by rounding are excepted:
+// rounding of forces, relative to the largest force on an atom, and rounding of the displacement of
+// a body in a step.
+
+static constexpr double OTHER_FORCES = 1.0, OTHER_NOISE = 10.0;
+static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-13;
 
 /* ---------------------------------------------------------------------- */
 
@@ -56,14 +80,571 @@ std::unique_ptr<Coupling> GearQuat::make_coupling(LAMMPS *lmp, const Fix *fix,
 Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
            Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally) :
     Pointers(lmp),
-    time_step(lmp), blowup(lmp, bodies, ownership, sites, present, args.control.shortest),
-    coupling(make_coupling(lmp, fix, args, bodies, sites)), args(args), present(args.scheme),
-    bodies(bodies), ownership(ownership), sites(sites), others(others), tally(std::move(tally))
+    fix(fix), args(args), ownership(ownership), time_step(lmp),
+    coupling(make_coupling(lmp, fix, args, bodies, sites)), fleet(fleet), bodies(bodies),
+    sites(sites), others(others), present(args.scheme),
+    blowup(lmp, bodies, ownership, sites, present, args.control.shortest), tally(std::move(tally)),
+    vibrations(lmp, bodies)
 {
   blowup.coupling = coupling.get();
   if (args.control.eps > 0.0)
     tolerance = std::make_unique<Tolerance>(lmp, fix, args.scheme, args.control, args.every_time,
-                                            fleet, bodies, time_step);
+                                            bodies, time_step);
+}
+
+const Step *Fleet::find(const Fix *fix) const
+{
+  for (const Step *one : members)
+    if (one->fix == fix) return one;
+  return nullptr;
+}
+
+bool Fleet::moves(const Fix *fix, const Atom *atom, int i) const
+{
+  const Step *one = find(fix);
+  return one ? one->ownership.in_body(i) : (atom->mask[i] & fix->groupbit) != 0;
+}
+
+/* ----------------------------------------------------------------------
+   before a run
+------------------------------------------------------------------------- */
+
+void Step::meet_bodies()
+{
+  if (!args.masks.empty()) masks = args.masks_of(ownership.all_ids());
+}
+
+void Step::init()
+{
+  if (tolerance) tolerance->refuse_scene();
+  for (const Step *other : fleet.members) {
+    if (other == this || !tolerance) continue;
+    const Fix *its = other->fix;
+    if (other->tolerance)
+      error->all(
+          FLERR,
+          "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
+          "do so",
+          its->id, its->style);
+    if (other->args.scheme.tuned)
+      error->all(FLERR,
+                 "Fix gear/quat tolerance: fix {} ({}) follows the changing time step, and with "
+                 "tuned coefficients errors from a change decay too slowly; give it corrector "
+                 "gear, or let this fix move its bodies",
+                 its->id, its->style);
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix gear/quat tolerance: nothing controls the errors of the bodies of fix {} "
+                     "({}), which follows the time step of this fix",
+                     its->id, its->style);
+  }
+  if (tolerance && started) tolerance->keep_step();
+  follow_length();
+}
+
+void Step::forget(const std::string &why)
+{
+  if (started && comm->me == 0) utils::logmesg(lmp, why + "\n");
+  started = false;
+}
+
+void Step::impose_masks()
+{
+  if (!ownership.change_masks(masks) || !started)
+    return;    // only the scheme of a restart file may differ
+  started = false;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: keywords force and torque turn off other components than in "
+                   "the run that wrote the restart file; poses and velocities are kept, the "
+                   "higher derivatives start anew");
+}
+
+void Step::begin_run()
+{
+  const double h = length();
+  if (update->nsteps > 0) blowup.pace = pace_of(lmp, bodies);
+  if (!started && !tolerance && update->nsteps > 0)
+    check_spins(lmp, bodies,
+                args.automatic_values ? scene_of(sums_by_loads(bodies)).choose(args.scheme).scheme
+                                      : scheme(),
+                blowup.pace, h);
+  if (coupling && args.automatic_values && !started && !args.scheme.first()) {
+    Scheme damped = args.scheme;    // the strongest friction that any number of values permits
+    damped.rows = SECOND_FEWEST;
+    coupling->set_scheme(damped);
+  }
+  if (coupling) coupling->begin_run(!started, tolerance ? std::min(h, longest_step()) : h);
+  if (tolerance) tolerance->announce_output();
+  vibrations.begin_run();
+  phase = Phase::SET_UP;
+}
+
+/// After a run of no step, the next run may begin without a setup.
+void Step::end_run()
+{
+  if (phase == Phase::ENDED) phase = Phase::BETWEEN;
+}
+
+void Step::take_velocities(bigint of_step, bool end)
+{
+  if (!others.any_taken()) return;
+  const std::vector<int> changed = others.take_velocities(of_step, end);
+  if (!started) return;
+  if (coupling) {
+    coupling->measure();
+    if (over_ranks(MPI_MAX, (int) !changed.empty(), world)) coupling->follow_velocities(length());
+  }
+  for (const int ibody : changed)
+    integrator->set_velocities(bodies.rigid_of(ibody), scaled_of(bodies, coupling.get(), ibody),
+                               acting(ibody), bodies.history(ibody));
+}
+
+/* ----------------------------------------------------------------------
+   which histories continue
+------------------------------------------------------------------------- */
+
+/// If one fix needs a start, all others start with it, where a full start is possible.
+void Step::start(double **f, double **torque)
+{
+  if (phase != Phase::SET_UP) {
+    take_velocities(update->ntimestep - 1, true);
+    return;
+  }
+  std::vector<Step *> full;
+  std::vector<bool> needed;
+  for (Step *one : fleet.members) {
+    one->take_velocities(update->ntimestep - 1, true);
+    one->ownership.spread_states();
+    one->gather(f, torque);
+  }
+  const Fix *first = fleet.members.front()->fix;
+  for (Step *one : fleet.members)
+    if (one->tolerance && !one->started)
+      one->tolerance->bound_first_step(one->longest_step(), first);
+  for (Step *one : fleet.members) {
+    one->phase = Phase::READY;
+    const bool needs = one->has_to_start(f);
+    if (one->bootstraps()) {
+      full.push_back(one);
+      needed.push_back(needs);
+    } else if (needs) {
+      if (one->tolerance) one->tolerance->begin();
+      one->starter(true).seed_local(one->tolerance ? 3 : 2, one->length());
+      one->note_start();
+      if (!one->tolerance) continue;
+      one->tolerance->shorten_first_step(first);
+      one->adopt_length();
+    }
+  }
+  start_together(full, needed);
+}
+
+void Step::start_together(const std::vector<Step *> &full, const std::vector<bool> &needed)
+{
+  if (!std::count(needed.begin(), needed.end(), true)) return;
+
+  // Histories that could continue also start again if this gives the other fixes a start of full
+  // order.
+
+  const bool some_go_on = std::count(needed.begin(), needed.end(), false) > 0;
+  const bool together = !some_go_on || full[0]->forces_can_be_followed();
+  std::vector<Starter> starters;
+  for (size_t n = 0; n < full.size(); ++n)
+    if (needed[n] || together) starters.push_back(full[n]->starter(needed[n]));
+  const bool found = Start(full[0]->lmp, starters, full[0]->length()).run();
+  for (size_t n = 0; n < full.size(); ++n)
+    if (needed[n] || (together && found)) full[n]->note_start();
+}
+
+/// Returns null if the histories can continue.  Collective.
+const char *Step::reason_to_start_anew(double **f)
+{
+  const double now = std::fabs(length()), last = std::fabs(time_step.begun());
+  if (now < SHORTER * last && can_start_anew())
+    return "the time step is less than half of the previous one";
+  if (now > LONGER * last && last != 0.0 && can_start_anew())
+    return "the time step is more than twice the previous one";
+  if (!movers.empty() && movers != present_movers() && can_start_anew())
+    return "other fixes move atoms than in the last steps";
+  if (const char *other = another_scheme_suits()) return other;
+  const char *changed = coupling ? coupling->reason_to_start_anew() : nullptr;
+  if (changed && (tolerance || (bootstraps() && forces_can_be_followed()))) return changed;
+  return forces_changed(f) ? "forces have changed since the last step" : nullptr;
+}
+
+/// The other fixes that move atoms: the derivatives of forces depend on that motion.
+std::string Step::present_movers() const
+{
+  std::string ids = "of this run:";
+  for (const auto *other : modify->get_fix_list())
+    if (other != fix && other->time_integrate) ids += std::string(" ") + other->id;
+  return ids;
+}
+
+/// True if a new start would be of full order, and would change only the histories.
+bool Step::can_start_anew() const
+{
+  return !tolerance && !(coupling && !coupling->may_start_anew()) && bootstraps() &&
+      forces_can_be_followed();
+}
+
+/// True if a start of full order can follow the forces, for all fixes together.
+bool Step::forces_can_be_followed() const
+{
+  std::vector<const Fix *> owners;
+  for (const Step *one : fleet.members)
+    if (one->bootstraps() || one == this) owners.push_back(one->fix);
+  return Forces(lmp, owners).reason().empty();
+}
+
+/// True if the residual of the present loads is too large for the histories.  The few values for
+/// forces that jump, as of contacts, follow any change soon.
+bool Step::forces_changed(double **f)
+{
+  if (noise_of_forces(lmp, ownership).noise != Noise::NONE) return false;
+  if (coupling) coupling->measure();
+  double here[2] = {0.0, 0.0};    // error of the last step, force on an atom
+  for (const Step *one : fleet.members)
+    for (int ibody = 0; ibody < one->bodies.nowned(); ++ibody)
+      here[0] = std::max(here[0], one->bodies.body_at(ibody).length(one->bodies.last_of(ibody)));
+  for (const Site &site : sites)
+    here[1] = std::max(here[1], force->ftm2v * GearQuat::length(f[site.atom]));
+  const auto largest = over_ranks(MPI_MAX, here, world);
+
+  double ratio = 0.0;
+  for (const auto *list : {&bodies.points, &bodies.tops})
+    for (const int ibody : *list) {
+      double rows[MAX_SIZE];
+      std::copy_n(bodies.history(ibody), scheme().size(), rows);
+      const Body &body = bodies.body_at(ibody);
+      const Correction found = list == &bodies.points
+          ? integrator->correct_center(body.rigid, acting(ibody), rows)
+          : integrator->correct(body.rigid, acting(ibody), rows);
+      const double one = body.length(found) / (largest[0] + rounding(ibody, largest[1]));
+      ratio = std::isfinite(one) ? std::max(ratio, one) : 2.0 * OTHER_NOISE;
+    }
+  ratio = over_ranks(MPI_MAX, ratio, world);
+  return ratio > OTHER_NOISE || (ratio > OTHER_FORCES && forces_can_be_followed());
+}
+
+/// The part of a residual due to rounding, as a length.  force: the largest one on an atom.
+double Step::rounding(int ibody, double force) const
+{
+  const Body &body = bodies.body_at(ibody);
+  const BodyState &s = bodies.state_of(ibody);
+  const double size = std::fabs(length());
+  double response = 1.0 / body.rigid.mass;
+  for (const double moment : body.rigid.inertia)
+    if (moment > 0.0) response = std::max(response, body.reach() * body.reach() / moment);
+  const double noise = ROUNDING_OF_FORCES * std::sqrt((double) body.natoms) * force;
+  const double way = size * GearQuat::length(s.velocity) +
+      body.reach() * (1.0 + size * GearQuat::length(s.omega_body));
+  return size * size * response * noise + ROUNDING_OF_MOTION * way;
+}
+
+/// True if histories have to start; rank 0 prints the reason if they start again.  Velocity Verlet
+/// continues with the present forces, as fixes of LAMMPS do, so that the total momentum is kept.
+bool Step::has_to_start(double **f)
+{
+  const char *reason = started ? reason_to_start_anew(f) : nullptr;
+  if (reason && comm->me == 0)
+    utils::logmesg(lmp, "Fix gear/quat {}: {}; histories are rebuilt\n", fix->id, reason);
+  const bool needs = !started || reason;
+  movers = present_movers();
+  if (needs) {
+    find_limits(length());
+    blowup.check_loads(length(), f);
+  }
+  for (int ibody = 0; ibody < bodies.nmoved() && !needs && scheme().is_verlet(); ++ibody) {
+    project_norm(bodies.change_state(ibody).q);
+    seed_body(bodies, ibody, scaled_of(bodies, coupling.get(), ibody), acting(ibody), scheme(),
+              length(), 3);
+  }
+  return needs;
+}
+
+Starter Step::starter(bool needed)
+{
+  if (needed && coupling) coupling->refer_to_box(length());
+  std::function<Scheme(const MotionSums &)> choose, foresee;
+  if (args.automatic_values) {
+    choose = [this](const MotionSums &here) {
+      return choose_scheme(here);
+    };
+    foresee = [this](const MotionSums &here) {
+      return scene_of_start(here).choose(args.scheme).scheme;
+    };
+  }
+  return {fix, &bodies, &ownership, &sites, coupling.get(), scheme(), needed, choose, foresee};
+}
+
+/// Histories have started.
+void Step::note_start()
+{
+  started = true;
+  // after the checks of the start, since an error of a coupling may have the same cause
+  if (chosen) warn_of_vibrations(*chosen, scheme(), true);
+  chosen.reset();
+  if (tolerance) make_integrator();
+}
+
+double Step::element(int n) const
+{
+  return n < of_tolerance() ? tolerance->element(n) : coupling->element(n - of_tolerance());
+}
+
+/* ----------------------------------------------------------------------
+   restart
+------------------------------------------------------------------------- */
+
+Step::Settings Step::settings() const
+{
+  const Scheme &scheme = tolerance ? args.scheme : this->scheme();
+  const ThermostatWords &temp = args.thermostat;
+  const PressureWords &box = args.pressure;
+  int components = 0;    // and which are coupled
+  for (int k = 0; k < PressureWords::COMPONENTS; ++k) components |= (int) box.on[k] << k;
+  for (int k = 0; k < 3 && box.any(); ++k)
+    components |= box.tied[k] << (PressureWords::COMPONENTS + 2 * k);
+  return {(double) scheme.formulation,
+          (double) scheme.values(),
+          (double) scheme.compensate,
+          (double) scheme.remembers,
+          (double) args.isokinetic,
+          temp.damp > 0.0 ? 1.0 + temp.separate : 0.0,
+          (double) temp.length,
+          (double) components,
+          (double) box.length,
+          (double) scheme.tuned,
+          (double) args.states("corrector"),
+          (double) started};
+}
+
+/// The keywords with another value in the file, without which histories cannot continue.
+std::vector<std::string> Step::other_settings(const Settings &mine) const
+{
+  static constexpr const char *KEYWORDS[TUNED] = {
+      "formulation", "values", "compensate", "tolerance",
+      "isokinetic",  "temp",   "tchain",     "iso, aniso, tri, x, y, z, xy, xz, yz or couple",
+      "pchain"};
+  std::vector<std::string> others;
+  const auto both = [&](int n) {
+    return of_file[n] != 0.0 && mine[n] != 0.0;
+  };
+  for (int n = FORMULATION; n < TUNED; ++n) {
+    if (of_file[n] == mine[n]) continue;
+    // a default depends on the formulation
+    if (n == VALUES && !args.states("values") && !others.empty()) continue;
+    if ((n == TCHAIN && !both(TEMP)) || (n == PCHAIN && !both(BOX))) continue;
+    others.emplace_back(n == TEMP && both(TEMP) ? "thermostat" : KEYWORDS[n]);
+  }
+  return others;
+}
+
+void Step::fields(Fields &v)
+{
+  v(time_step, edge_rate, movers, sites);
+  if (tolerance) tolerance->fields(v);
+  if (coupling) coupling->fields(v);
+}
+
+void Step::write(Fields &file)
+{
+  Settings mine = settings();
+  file(mine);
+  fields(file);
+}
+
+void Step::adopt_scheme(Fields &file)
+{
+  file(of_file);
+  Scheme scheme = args.scheme;
+  if (tolerance || of_file[TOLERANCE] != 0.0 || of_file[STARTED] == 0.0 ||
+      of_file[FORMULATION] != (double) scheme.formulation)
+    return;
+  if (args.automatic_values) scheme.rows = (int) of_file[VALUES];
+  if (scheme.values() != of_file[VALUES]) return;
+  if (!args.states("corrector")) scheme.tuned = of_file[TUNED] != 0.0;
+  set_scheme(scheme);
+}
+
+bool Step::read(Fields &file)
+{
+  const Settings mine = settings();
+  const auto others = other_settings(mine);
+  if (others.empty()) {
+    started = of_file[STARTED] != 0.0;
+    fields(file);
+    if (!file.is_complete()) return false;
+    // the number of values belongs to a corrector that this command does not state
+    if (of_file[STATES_CORRECTOR] != 0.0 && mine[STATES_CORRECTOR] == 0.0) edge_rate = 0.0;
+    if (length() != 0.0) make_integrator();
+  }
+  if (comm->me != 0) return true;
+  const auto corrector = [](bool tuned) {
+    return tuned ? "tuned" : "gear";
+  };
+  if (started)
+    utils::logmesg(
+        lmp,
+        "Fix gear/quat {}: histories of the restart file go on with values {}, corrector "
+        "{}\n",
+        fix->id, scheme().values(), corrector(scheme().tuned));
+  if (started && of_file[TUNED] != mine[TUNED])
+    error->warning(
+        FLERR,
+        "Fix gear/quat: the restart file was written with corrector {}; its histories go "
+        "on with corrector {}",
+        corrector(of_file[TUNED] != 0.0), corrector(scheme().tuned));
+  if (of_file[STARTED] != 0.0 && !others.empty())
+    error->warning(
+        FLERR,
+        "Fix gear/quat: the restart file was written with other settings of {}; poses and "
+        "velocities are kept, the higher derivatives are rebuilt",
+        utils::join_words(others, ", "));
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   the number of values, where the command does not state it
+------------------------------------------------------------------------- */
+
+/// Input to the choice.  here: of the bodies that this rank owns.  Collective.
+ChoiceOfValues Step::scene_of(const MotionSums &here) const
+{
+  MotionSums all = here;
+  const auto sums = over_ranks(MPI_SUM, all.sums, world);
+  std::copy(sums.begin(), sums.end(), all.sums);
+  ChoiceOfValues scene;
+  scene.edge = bodies.number() > 0 ? all.fast_edge(length()) : HUGE_VAL;
+  scene.exact = all.knows_derivatives(length());
+  scene.noise = noise_of_forces(lmp, ownership).noise;
+  scene.may_be_gear = !args.states("corrector");
+  scene.automatic = args.automatic_values;
+  return scene;
+}
+
+/// Includes the friction of a coupling whose run has begun.
+ChoiceOfValues Step::scene_of_start(const MotionSums &here) const
+{
+  ChoiceOfValues scene = scene_of(here);
+  if (coupling) scene.friction = coupling->friction_ahead(length());
+  return scene;
+}
+
+/// Histories have this scheme after the call.
+Scheme Step::choose_scheme(const MotionSums &here)
+{
+  const ChoiceOfValues scene = scene_of_start(here);
+  const ChoiceOfValues::Choice choice = scene.choose(args.scheme);
+  edge_rate = scene.edge / std::fabs(length());
+  tell_choice(scene, choice);
+  chosen = scene;
+  warned_values = false;
+  set_scheme(choice.scheme);
+  return choice.scheme;
+}
+
+/// Collective.
+void Step::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const
+{
+  using Reason = ChoiceOfValues::Reason;
+  const NoisyForces forces = noise_of_forces(lmp, ownership);    // on all ranks
+  if (comm->me != 0) return;
+  std::string why;
+  if (choice.reason == Reason::NOISE)
+    why = "because " + forces.words();
+  else if (choice.reason == Reason::FRICTION)
+    why = "because the thermostat has a strong friction";
+  else if (choice.reason == Reason::FORMULATION)
+    why = "as always with corrector gear";
+  else if (std::isfinite(scene.edge))
+    why = fmt::format("for vibrations of {:.2g} radians in a step", scene.edge);
+  else
+    why = bodies.number() > 0 ? "because the motion is not known before it begins"
+                              : "because there are no bodies yet";
+  const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
+  utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
+                 choice.scheme.is_verlet() ? " (velocity Verlet)"
+                     : other_corrector     ? " and corrector gear"
+                                           : "",
+                 why);
+}
+
+/// Warns once, and again if only a much shorter step is short enough.
+void Step::warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins)
+{
+  const double advised = std::fabs(length()) * scene.advised_part(scheme);
+  if (!scene.too_long(scheme) || advised * ChoiceOfValues::BAND > advised_step) return;
+  advised_step = advised;
+  if (comm->me != 0) return;
+  const std::string who = scene.chooses_longest(scheme)
+      ? "any number of values"
+      : fmt::format("{} values of formulation {} and corrector {}", scheme.values(),
+                    word_of(scheme.formulation), scheme.tuned ? "tuned" : "gear");
+  const char *otherwise = "";
+  if (begins)
+    otherwise = ", or, if atoms overlap, begin with a run with keywords tolerance and temp";
+  else if (!scene.chooses_longest(scheme) && !scheme.first())
+    otherwise = ", or leave out keywords values and corrector";
+  error->warning(FLERR,
+                 "Fix gear/quat {}: {}vibrations of {:.2g} radians in a step are "
+                 "more than {} can follow for long; use a time step of {:g} or shorter{}",
+                 fix->id, begins ? "" : fmt::format("at step {} ", update->ntimestep), scene.edge,
+                 who, rounded_down(advised), otherwise);
+}
+
+void Step::look_at_vibrations()
+{
+  if (tolerance) return;
+  // short runs with a stated number are not examined, so that effects that are off are free
+  if (!args.automatic_values && update->laststep - update->firststep < Vibrations::FIRST_WINDOW)
+    return;
+  if (!vibrations.note_step(length())) return;
+  ChoiceOfValues scene = scene_of(vibrations.sums());
+  scene.edge = MotionSums::true_edge(scene.edge);
+  if (scene.exact && scene.too_long(scheme())) {
+    warn_of_vibrations(scene, scheme(), false);
+    return;
+  }
+  if (scene.exact && args.automatic_values) warn_of_values(scene);
+}
+
+/// Warns once for these histories, which keep their number of values.
+void Step::warn_of_values(const ChoiceOfValues &scene)
+{
+  const int present = scheme().values();
+  const ChoiceOfValues::Choice suits = scene.choose(args.scheme, present);
+  if (warned_values || suits.reason != ChoiceOfValues::Reason::MOTION ||
+      suits.scheme.values() >= present)
+    return;
+  warned_values = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat {}: at step {} vibrations of {:.2g} "
+                   "radians in a step require {} values, but histories began with {} for a slower "
+                   "motion; use keyword values {}, or define the fix again before the next run",
+                   fix->id, update->ntimestep, scene.edge, suits.scheme.values(), present,
+                   suits.scheme.values());
+}
+
+/// Returns the reason to start histories again with another number of values, null for none.
+/// Reasons are a change of the step or of forces.  Vibrations are from the last
+/// start.  Collective.
+const char *Step::another_scheme_suits()
+{
+  if (!args.automatic_values || edge_rate == 0.0) return nullptr;
+  ChoiceOfValues scene = scene_of(MotionSums());
+  scene.edge = edge_rate * std::fabs(length());
+  using Reason = ChoiceOfValues::Reason;
+  const Scheme &present = scheme();
+  const ChoiceOfValues::Choice choice = scene.choose(args.scheme, present.values());
+  if (choice.scheme.values() == present.values() && choice.scheme.tuned == present.tuned)
+    return nullptr;
+  if (choice.reason != Reason::MOTION && choice.reason != Reason::FORMULATION)
+    return "forces suit another number of values";
+  return can_start_anew() ? "the motion suits another number of values" : nullptr;
 }
 
 /* ----------------------------------------------------------------------
@@ -73,33 +654,34 @@ Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &flee
 void Step::begin(int vflag, double **f)
 {
   vflag_of_step = vflag;
-  check_other_fixes();
+  others.check_velocities(phase == Phase::BETWEEN);    // in a run with `pre no` of all sites
   if (tolerance) tolerance->begin_step();
   if (tolerance && coupling) coupling->keep();
   predict(f);
   place_prediction();
-  within = true;
+  phase = Phase::BEGUN;
 }
 
 void Step::end(double **f, double **torque)
 {
   others.check_places();
-  within = false;
+  phase = Phase::ENDED;
   for (;;) {
     gather(f, torque);
     // here, since the atoms are at the positions of the forces
     if (!coupling || coupling->others_ask_for_virial()) tally(vflag_of_step, f);
     correct(f);
-    if (is_accepted()) break;
+    if (!tolerance || tolerance->accepts()) break;
     shorten();
     predict(f);
     place_prediction();
     tolerance->evaluate(vflag_of_step);
   }
-  hold(f);
+  accept(f);
   if (bodies.have_copies()) ownership.spread_moved();
   sites.place(true);
   if (is_due(readers.of_atoms)) comm->forward_comm();    // ghosts are where forces were evaluated
+  look_at_vibrations();
 }
 
 void Step::gather(double **f, double **torque)
@@ -113,19 +695,13 @@ void Step::choose_next()
   const double next = tolerance->choose(coupling ? coupling->longest_step() : HUGE_VAL);
   make_integrator();
   time_step.change(next);
+  adopt_length();
   tolerance->order_output();
 }
 
 /* ----------------------------------------------------------------------
    its parts
 ------------------------------------------------------------------------- */
-
-/// In the first step of a run with `pre no` bodies have not been compared with their atoms yet.
-void Step::check_other_fixes()
-{
-  others.check_velocities(update->ntimestep == update->firststep + 1 && !compared);
-  compared = false;
-}
 
 void Step::predict(double **f)
 {
@@ -181,10 +757,13 @@ void Step::place_prediction()
 
 void Step::correct(double **f)
 {
-  if (coupling)
-    correct_together();
-  else
+  if (!coupling) {
     args.masks.empty() ? correct_bodies<false>(f) : correct_bodies<true>(f);
+    return;
+  }
+  if (tolerance) tolerance->note_prediction();
+  coupling->correct(*integrator, scheme().coupled_passes());
+  if (tolerance) tolerance->note_correction(*integrator, *coupling);
 }
 
 /// MASKED: some components of the loads are turned off.
@@ -220,19 +799,6 @@ template <bool MASKED, bool POINT, bool CHANGING> void Step::correct_body(int ib
   if (!CHANGING) examine(ibody, f);
 }
 
-void Step::correct_together()
-{
-  if (tolerance) tolerance->note_prediction();
-  coupling->correct(*integrator, scheme().coupled_passes());
-  if (tolerance) tolerance->note_correction(*integrator, *coupling);
-}
-
-/// Without step control every step is accepted.
-bool Step::is_accepted()
-{
-  return !tolerance || tolerance->accepts();
-}
-
 /// Restores the histories to the beginning of the step, for another try.
 void Step::shorten()
 {
@@ -241,32 +807,28 @@ void Step::shorten()
   tolerance->shorten_loads();
   make_integrator();
   tolerance->shorten_step();
+  adopt_length();
   bodies.keep_histories();
   if (coupling) coupling->keep();
 }
 
-/// Accepts the step.
-void Step::hold(double **f)
+/// Histories of bodies inserted in this step start with the known derivatives.
+void Step::accept(double **f)
 {
+  const double h = integrator->step();
   if (tolerance || coupling) {    // otherwise correct_body() has done this
     for (const auto *list : {&bodies.points, &bodies.tops})
       for (const int ibody : *list) examine(ibody, f);
   }
-  if (coupling) coupling->note_step(integrator->step());
-  begin_fresh(f);
-}
-
-/// Histories of bodies inserted in this step start with the known derivatives.
-void Step::begin_fresh(double **f)
-{
+  if (coupling) coupling->note_step(h);
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
-    blowup.check_load(ibody, integrator->step(), f);
-    seed_body(bodies, ibody, scaled_of(bodies, coupling.get(), ibody), acting(ibody), scheme(),
-              integrator->step(), known);
+    blowup.check_load(ibody, h, f);
+    seed_body(bodies, ibody, scaled_of(bodies, coupling.get(), ibody), acting(ibody), scheme(), h,
+              known);
   }
   if (!bodies.fresh.empty()) bodies.take_in_fresh();
-  if (coupling) coupling->follow_changes(integrator->step());
+  if (coupling) coupling->follow_changes(h);
 }
 
 /// A shrink-wrapped box sets no limits.
@@ -289,17 +851,6 @@ inline void Step::examine(int ibody, double **f)
 {
   const BodyState &state = bodies.state_of(ibody);
   if (!blowup.limits.keep(state)) blowup.stop(ibody, state, integrator->step(), f);
-}
-
-void Step::check_loads(double **f)
-{
-  find_limits(length());
-  blowup.check_loads(length(), f);
-}
-
-bool Step::shows_local_data() const
-{
-  return is_due(readers.of_local_data);
 }
 
 /// True if output is due in this step, or if the step is a multiple of one of the periods.
@@ -338,7 +889,11 @@ void Step::set_scheme(const Scheme &scheme)
 
 void Step::follow_length()
 {
-  if (tolerance && started && !time_step.is_changing()) return;    // it will be restored
+  if (!tolerance || !started) adopt_length();    // otherwise LAMMPS' length will be restored
+}
+
+void Step::adopt_length()
+{
   const double ratio = time_step.follow();
   if (ratio == 0.0) return;
   if (integrator)

@@ -3,7 +3,13 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* One step of all bodies of a fix:
+/* The motion of the bodies of a fix.  Histories continue from run to run, or start:
+
+     begin_run()        LAMMPS has evaluated the forces before the first step
+     start()            before a step: velocities from other fixes; before the first step of a run
+                        histories of all fixes gear/quat, which continue or start
+
+   One step of all bodies:
 
      begin()            predict, place sites
      LAMMPS             forces at the predicted sites
@@ -12,26 +18,53 @@
                         place sites
      choose_next()      with a changing step, when all fixes have finished this one
 
-   A Step owns the objects of a step: the length, the integrator, the coupling of all bodies, the
-   control of the error, and the limits beyond which a run ends. */
+   A Step owns the length of the step, the integrator, the coupling of all bodies, the control of the
+   error, and the limits beyond which a run ends. */
 
 #ifndef LMP_GEAR_QUAT_STEP_H
 #define LMP_GEAR_QUAT_STEP_H
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_blowup.h"
-#include "gear_quat_coupling.h"
 #include "gear_quat_fixes.h"
 #include "gear_quat_scene.h"
-#include "gear_quat_sites.h"
-#include "gear_quat_time_step.h"
+#include "gear_quat_start.h"
 #include "gear_quat_tolerance.h"
+#include "gear_quat_vibrations.h"
 
+#include <array>
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
+
+/// The present time of a fix.
+enum class Phase {
+  DEFINED,     ///< the command has made the bodies, whose atoms the user may still change
+  COMPARED,    ///< bodies were compared with their atoms, or are from a restart file; no run yet
+  SET_UP,      ///< LAMMPS has set up a run
+  READY,       ///< histories are ready for its first step
+  BEGUN,       ///< in a step, which LAMMPS evaluates forces for
+  ENDED,       ///< a step has ended
+  BETWEEN      ///< a run has ended
+};
+
+class Step;
+
+/// All fixes gear/quat of a run, in the order in which they begin a step.  Their bodies act on each
+/// other, so their histories start together.
+struct Fleet {
+  std::vector<Step *> members;
+
+  /// The fix as a fix gear/quat, null for a fix of another style.
+  const Step *find(const Fix *fix) const;
+  /// True if a fix that integrates in time moves this owned atom.
+  bool moves(const Fix *fix, const Atom *atom, int i) const;
+};
 
 /// The coupling of all bodies selected by the keywords, null for none.
 std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, const Arguments &args,
@@ -39,91 +72,177 @@ std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, const Argum
 
 class Step : protected Pointers {
  public:
-  /// tally(vflag, f): adds the virial of the constraint forces, computed from the forces f on
-  /// atoms.
+  /// bodies: empty, with histories of args.scheme.  tally(vflag, f): adds the virial of the
+  /// constraint forces, computed from the forces f on atoms.
   using Tally = std::function<void(int, double **)>;
   Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
        Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally);
 
-  /// f: forces on atoms.
-  void begin(int vflag, double **f);
-  /// f, torque: of the predicted sites.  Collective.
-  void end(double **f, double **torque);
-  /// Chooses the next step; with keyword tolerance only.  Collective.
-  void choose_next();
-
-  /// Loads of bodies from the forces on atoms that LAMMPS has just evaluated.  Collective.
-  void gather(double **f, double **torque);
-
-  // before a run
-
-  /// of_predicted_velocities: true if velocities are read between begin() and end().
-  void expect_readers(bool of_predicted_velocities) { velocities_read = of_predicted_velocities; }
-  /// Bodies have been compared with their atoms, so the next step omits it.
-  void note_comparison() { compared = true; }
-  /// Histories and integrator adopt LAMMPS' time step.
-  void follow_length();
-  /// Makes the integrator; histories have the number of values of scheme().
-  void make_integrator();
-  /// Replaces the coupling between runs; null for none.
-  void set_coupling(std::unique_ptr<Coupling> other);
-  /// Replaces the scheme, without keyword tolerance; there are no histories.
-  void set_scheme(const Scheme &scheme);
-
-  /// Ends the run if the present loads would make a body unstable in the next step.
-  void check_loads(double **f);
-  /// Other fixes that read atoms, or local data of this fix, at the end of a step.
-  void expect_readers_at_end(const Readers &others) { readers = others; }
-  /// True if something may read local data at the end of this step.
-  bool shows_local_data() const;
-
-  /// True between begin() and end().
-  bool is_within() const { return within; }
-
+  Phase phase = Phase::DEFINED;
+  bool had_run() const { return phase >= Phase::SET_UP; }
   /// True once bodies have histories of the present length.
   bool started = false;
 
+  // before a run; all collective
+
+  /// The store has made its bodies; sets their masks.
+  void meet_bodies();
+  /// Ends the run if the simulation does not allow a changing time step.
+  void init();
+  /// Discards the histories.  Rank 0 prints the reason if there are any.
+  void forget(const std::string &why);
+  /// Replaces the masks of a restart file by the masks of the command.
+  void impose_masks();
+  /// Called when poses, velocities and loads are present.
+  void begin_run();
+  void end_run();
+  /// Bodies, and then their histories, adopt velocities that other fixes have given to atoms, at the
+  /// end of that step if `end`.
+  void take_velocities(bigint of_step, bool end);
+  /// Histories and integrator adopt LAMMPS' time step.
+  void follow_length();
+  /// Replaces the coupling between runs; null for none.
+  void set_coupling(std::unique_ptr<Coupling> other);
+
+  // a step; f, torque: of atoms; all collective
+
+  /// f, torque: of the previous step, from all pair styles and fixes.
+  void start(double **f, double **torque);
+  void begin(int vflag, double **f);
+  /// f, torque: of the predicted sites.
+  void end(double **f, double **torque);
+  /// Chooses the next step; with keyword tolerance only.
+  void choose_next();
+  /// Loads of bodies from the forces on atoms that LAMMPS has just evaluated.
+  void gather(double **f, double **torque);
+  /// True if something may read local data at the end of this step.
+  bool shows_local_data() const { return is_due(readers.of_local_data); }
+
+  // elements of the fix's vector after the elements of Sums
+
+  int elements() const { return of_tolerance() + (coupling ? coupling->elements() : 0); }
+  double element(int n) const;
+  /// 1 if an element is proportional to the number of bodies.
+  int extensive(int n) const { return coupling && coupling->extensive(n - of_tolerance()); }
+  /// The energy that a thermostat has removed from the bodies.
+  double energy() const { return coupling ? coupling->energy() : 0.0; }
+
+  // restart files
+
+  /// Writes the state other than histories.
+  void write(Fields &file);
+  /// Before the histories of the file arrive: settings of the file that this command does not state
+  /// are adopted, if histories can continue with them.
+  void adopt_scheme(Fields &file);
+  /// The histories of the file have arrived.  If they do not fit this command, histories start
+  /// again, and rank 0 prints a message, as it does if they continue with another corrector.
+  /// False if the file is damaged.
+  bool read(Fields &file);
+
   const Scheme &scheme() const { return tolerance ? tolerance->scheme() : present; }
   double length() const { return time_step.length(); }
-  /// The current integrator, null before the first run.
-  const Integrator *present_integrator() const { return integrator.get(); }
+  /// The current integrator; null while there are no histories.
+  const Integrator *present_integrator() const { return started ? integrator.get() : nullptr; }
+
+  const Fix *const fix;
+  const Arguments &args;
+  Ownership &ownership;
+  TimeStep time_step;
+  std::unique_ptr<Tolerance> tolerance;    ///< null: the step is LAMMPS' own
+  std::unique_ptr<Coupling> coupling;      ///< null: bodies move by their own loads
+  Readers readers;                         ///< other fixes that read at the end of a step
+  bool velocities_read = true;             ///< by other styles, between begin() and end()
+
+ private:
+  const Fleet &fleet;
+  Bodies &bodies;
+  Sites &sites;
+  OtherFixes &others;
+  Scheme present;    ///< without keyword tolerance
+  Blowup blowup;
+  Tally tally;
+  std::unique_ptr<Integrator> integrator;
+  int vflag_of_step = 0;           ///< LAMMPS' vflag when the step began
+  std::map<tagint, Mask> masks;    ///< of the command, by the IDs of bodies
+  std::string movers;              ///< IDs of the other fixes that moved atoms in the last steps
+
+  /// Settings in a restart file: histories continue only if the keywords before TUNED are the same.
+  enum {
+    FORMULATION,
+    VALUES,
+    COMPENSATE,
+    TOLERANCE,
+    ISOKINETIC,
+    TEMP,
+    TCHAIN,
+    BOX,
+    PCHAIN,
+    TUNED,
+    STATES_CORRECTOR,
+    STARTED,
+    SETTINGS
+  };
+  using Settings = std::array<double, SETTINGS>;
+  Settings of_file = {};
+  Settings settings() const;
+  std::vector<std::string> other_settings(const Settings &mine) const;
+  void fields(Fields &v);
+  int of_tolerance() const { return tolerance ? Tolerance::ELEMENTS : 0; }
+
   /// The load on a body; with a coupling after its measure().
   Load acting(int ibody) const { return acting_on(bodies, coupling.get(), ibody); }
 
-  TimeStep time_step;
-  Blowup blowup;
-  std::unique_ptr<Tolerance> tolerance;    ///< null: the step is LAMMPS' own
-  std::unique_ptr<Coupling> coupling;      ///< null: bodies move by their own loads
+  // start
 
- private:
-  const Arguments &args;
-  Scheme present;    ///< without keyword tolerance
-  Bodies &bodies;
-  Ownership &ownership;
-  Sites &sites;
-  OtherFixes &others;
-  Tally tally;
-  std::unique_ptr<Integrator> integrator;
-  int vflag_of_step = 0;          ///< LAMMPS' vflag when the step began
-  bool velocities_read = true;    ///< by other styles, between prediction and correction
-  bool compared = false;
-  bool within = false;
-  Readers readers;
+  /// Positive; infinite if it is limited only by errors and dtmax.
+  double longest_step() const { return coupling ? coupling->longest_step() : HUGE_VAL; }
+  /// True unless start zero or a tolerance is given: a start determines as many derivatives as it can.
+  bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP && !tolerance; }
+  static void start_together(const std::vector<Step *> &full, const std::vector<bool> &needed);
+  bool has_to_start(double **f);
+  Starter starter(bool needed);
+  void note_start();
+  const char *reason_to_start_anew(double **f);
+  bool can_start_anew() const;
+  bool forces_can_be_followed() const;
+  std::string present_movers() const;
+  bool forces_changed(double **f);
+  double rounding(int ibody, double force) const;
 
-  void check_other_fixes();
+  // the number of values
+
+  double edge_rate = 0.0;    ///< fast edge divided by the step, if the number was chosen
+  Vibrations vibrations;
+  double advised_step = HUGE_VAL;          ///< by the last warning about vibrations
+  std::optional<ChoiceOfValues> chosen;    ///< input to the choice of a start that has not ended
+  bool warned_values = false;
+  ChoiceOfValues scene_of(const MotionSums &here) const;
+  ChoiceOfValues scene_of_start(const MotionSums &here) const;
+  Scheme choose_scheme(const MotionSums &here);
+  void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
+  void warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins);
+  void look_at_vibrations();
+  void warn_of_values(const ChoiceOfValues &scene);
+  const char *another_scheme_suits();
+
+  // a step
+
   void predict(double **f);
   void place_prediction();
   void correct(double **f);
   template <bool MASKED> void correct_bodies(double **f);
   template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int ibody, double **f);
-  void correct_together();
-  bool is_accepted();
   void shorten();
-  void hold(double **f);
-  void begin_fresh(double **f);
+  void accept(double **f);
   void examine(int ibody, double **f);
   void find_limits(double h);
   bool is_due(const std::vector<int> &periods) const;
+
+  // the length of the step
+
+  void make_integrator();
+  void set_scheme(const Scheme &scheme);
+  void adopt_length();
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -30,10 +30,60 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
+/* ---------------------------------------------------------------------- */
+
+/// An invalid length is refused earlier, by the checks before a run.
+double TimeStep::follow()
+{
+  const double next = update->dt;
+  if (next == 0.0 || !std::isfinite(next) || next == h) return 0.0;
+  const double ratio = next / h;
+  h = next;
+  return ratio;
+}
+
+void TimeStep::change(double step)
+{
+  update->update_time();    // in every step: rounding then does not depend on the number of runs
+  if (step != update->dt) set(step);
+}
+
+void TimeStep::change_begun(double step)
+{
+  const bigint before = update->ntimestep - 1;
+  update->atime += (before - update->atimestep) * update->dt;
+  update->atimestep = before;
+  --update->ntimestep;    // a dump in intervals of time may not be due at the new end of the step
+  set(step);
+  ++update->ntimestep;
+}
+
+/// Changes the step as fix dt/reset does; this fix is notified together with all others.
+void TimeStep::set(double step)
+{
+  update->dt = step;
+  update->dt_default = 0;
+  if (force->pair) force->pair->reset_dt();
+  for (auto *fix : modify->get_fix_list()) fix->reset_dt();
+  output->reset_dt();
+}
+
+double TimeStep::beginning() const
+{
+  return update->atime + (update->ntimestep - 1 - update->atimestep) * update->dt;
+}
+
+double TimeStep::end() const
+{
+  return update->atime + (update->ntimestep - update->atimestep) * update->dt;
+}
+
+/* ---------------------------------------------------------------------- */
+
 Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
-                     double every_time, const Fleet &fleet, Bodies &bodies, TimeStep &time_step) :
+                     double every_time, Bodies &bodies, TimeStep &time_step) :
     Pointers(lmp),
-    fix(fix), fleet(fleet), bodies(bodies), time_step(time_step),
+    fix(fix), bodies(bodies), time_step(time_step),
     present(RememberedLoads::scheme(scheme.compensate)), control(control), every_time(every_time),
     remembered(scheme.compensate), repeat(lmp, fix), predicted(bodies), failed()
 {
@@ -46,27 +96,13 @@ void Tolerance::refuse_scene() const
     error->all(FLERR,
                "Fix gear/quat tolerance cannot be used with run_style respa, whose levels "
                "have different steps");
-  for (auto *other : modify->get_fix_list()) {
-    if (other == fix) continue;
-    const Fleet::Member *same = fleet.find(other);
-    if (known(FixFact::TIME_STEP, other) || (same && same->changes_step))
+  for (auto *other : modify->get_fix_list())
+    if (other != fix && known(FixFact::TIME_STEP, other))
       error->all(
           FLERR,
           "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
           "do so",
           other->id, other->style);
-    if (same && same->tuned)
-      error->all(FLERR,
-                 "Fix gear/quat tolerance: fix {} ({}) follows the changing time step, and with "
-                 "tuned coefficients errors from a change decay too slowly; give it corrector "
-                 "gear, or let this fix move its bodies",
-                 other->id, other->style);
-    if (same && comm->me == 0)
-      error->warning(FLERR,
-                     "Fix gear/quat tolerance: nothing controls the errors of the bodies of fix {} "
-                     "({}), which follows the time step of this fix",
-                     other->id, other->style);
-  }
 }
 
 /* ----------------------------------------------------------------------
@@ -118,18 +154,18 @@ double Tolerance::first_step() const
   return over_ranks(MPI_MIN, least, world);
 }
 
-void Tolerance::bound_first_step(double permitted)
+void Tolerance::bound_first_step(double permitted, const Fix *first)
 {
   const double given = std::fabs(update->dt);
   double size =
       std::min({given, permitted, farthest_step(over_ranks(MPI_MAX, largest_speed(), world))});
   if (control.longest > 0.0) size = std::min(size, control.longest);
   size = std::max(size, control.shortest);
-  if (size != given && !integrated_before(first_mover()))
+  if (size != given && !integrated_before(first))
     time_step.change_begun(std::copysign(size, update->dt));
 }
 
-void Tolerance::shorten_first_step()
+void Tolerance::shorten_first_step(const Fix *first)
 {
   warn_of_rounding();
   const double speed = over_ranks(MPI_MAX, largest_speed(), world);
@@ -137,7 +173,7 @@ void Tolerance::shorten_first_step()
   size = std::max(control.shortest, size);
   size = std::fabs(even(std::copysign(size, update->dt), time_step.beginning()));
   if (size >= std::fabs(update->dt)) return;
-  if (const Fix *other = integrated_before(first_mover())) {
+  if (const Fix *other = integrated_before(first)) {
     if (comm->me == 0)
       error->warning(FLERR,
                      "Fix gear/quat tolerance: the first step of {:.3g} should be no longer than "
@@ -156,12 +192,6 @@ void Tolerance::tell_of_first_step(double instead) const
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat tolerance: first step {:.3g} instead of {:.3g}\n",
                    update->dt, instead);
-}
-
-/// The first fix gear/quat, which starts the histories of all before it begins the step.
-const Fix *Tolerance::first_mover() const
-{
-  return fleet.members.front().fix;
 }
 
 /// A fix that has begun this step before `begins` begins it, null for none.

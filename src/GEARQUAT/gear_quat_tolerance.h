@@ -18,14 +18,53 @@
 #define LMP_GEAR_QUAT_TOLERANCE_H
 
 #include "gear_quat_coupling.h"
-#include "gear_quat_fleet.h"
 #include "gear_quat_forces.h"
-#include "gear_quat_time_step.h"
 
 #include <memory>
 #include <string>
 
 namespace LAMMPS_NS::GearQuat {
+
+/// The length of the step in histories and in LAMMPS. Only this class changes these lengths.
+///
+/// Histories have the length of the last or of the current step.  After the command timestep LAMMPS'
+/// length may differ; then the histories follow: their owner rescales them by follow().  With keyword
+/// tolerance, change() and change_begun() set the length of LAMMPS and of all fixes.
+class TimeStep : protected Pointers {
+ public:
+  explicit TimeStep(LAMMPS *lmp) : Pointers(lmp) {}
+
+  /// The length of the step in histories; 0 before the first run.
+  double length() const { return h; }
+  /// The length of the step that began last; 0 before the first step.
+  double begun() const { return last; }
+  /// Called when a step of this length begins.
+  void begin() { last = h; }
+  /// Adopts LAMMPS' step for the histories.  Returns the ratio of new to old length, 0 for no
+  /// change; infinite if there was none.
+  double follow();
+
+  // LAMMPS' step, and dependent quantities in other fixes and in this fix
+
+  /// Changes the length after the current step.
+  void change(double step);
+  /// Changes the present step, which has begun with another length: the time so far consists of the
+  /// steps before it.
+  void change_begun(double step);
+
+  // times
+
+  /// The times at the beginning and at the end of the present step.
+  double beginning() const;
+  double end() const;
+
+  template <class V> void fields(V &v) { v(h, last); }
+
+ private:
+  double h = 0.0, last = 0.0;
+
+  void set(double step);
+};
 
 /* Repetition of a step of LAMMPS with another length, during final_integrate().
 
@@ -75,7 +114,7 @@ class Tolerance : protected Pointers {
   /// scheme: of the fix, with the largest number of loads.  every_time: steps end at multiples of
   /// this time, 0: at any time.
   Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
-            double every_time, const Fleet &fleet, Bodies &bodies, TimeStep &time_step);
+            double every_time, Bodies &bodies, TimeStep &time_step);
 
   /// Ends the run if another style changes the time step, or does not support its changes.
   void refuse_scene() const;
@@ -88,9 +127,10 @@ class Tolerance : protected Pointers {
   void begin();
   /// Before histories are made: limits the first step to dtmin, dtmax, the motion allowed, and
   /// `permitted`.  Collective.
-  void bound_first_step(double permitted);
+  /// first: the first fix gear/quat, which starts the histories of all before it begins the step.
+  void bound_first_step(double permitted, const Fix *first);
   /// Shortens the first step if its error would be too large.  Collective.
-  void shorten_first_step();
+  void shorten_first_step(const Fix *first);
 
   /// Begins a step, with the histories of the last step.  After a run with `pre no` the length of
   /// the histories is restored; ends the run if other atoms have moved already.  Collective.
@@ -129,7 +169,6 @@ class Tolerance : protected Pointers {
 
  private:
   const Fix *fix;
-  const Fleet &fleet;
   Bodies &bodies;
   TimeStep &time_step;
   Scheme present;
@@ -152,7 +191,6 @@ class Tolerance : protected Pointers {
   void change_loads(int loads);
   void put_back_begun_step();
   void tell_of_step() const;
-  const Fix *first_mover() const;
   const Fix *integrated_before(const Fix *begins) const;
   double largest_speed() const;
   double farthest_step(double speed) const;
