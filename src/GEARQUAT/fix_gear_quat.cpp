@@ -17,17 +17,14 @@
 #include "gear_quat_report.h"
 #include "gear_quat_scene.h"
 
-#include "atom.h"
 #include "comm.h"
 #include "error.h"
 #include "force.h"
 #include "group.h"
 #include "input.h"
 #include "modify.h"
-#include "update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -126,20 +123,13 @@ int FixGearQuat::setmask()
    before a run
 ------------------------------------------------------------------------- */
 
-/// All fixes gear/quat of this run.
-void FixGearQuat::meet_fleet()
+void FixGearQuat::init()
 {
   fleet.members.clear();
   for (auto *other : modify->get_fix_list())
     if (auto *same = dynamic_cast<FixGearQuat *>(other)) fleet.members.push_back(&same->step);
-}
-
-void FixGearQuat::init()
-{
-  meet_fleet();
   refuse_scene(lmp, this, fleet, ownership);
-  minimization.end();
-  if (update->whichflag == 2) {
+  if (is_minimized()) {
     driven_box.rest();
     minimization.init();
     sites.expect_forces(true);
@@ -160,15 +150,10 @@ void FixGearQuat::init()
   sites.expect_forces(makes_forces(lmp, this) || other_fixes.any_taken());
 }
 
-void FixGearQuat::reset_dt()
-{
-  step.follow_length();
-}
-
 /// In a minimization, LAMMPS continues from the end of the last line search.
 void FixGearQuat::deform(int flag)
 {
-  if (flag == 0 && minimization.is_on()) minimization.put_back();
+  if (flag == 0 && is_minimized()) minimization.put_back();
   flag == 0 ? driven_box.begin_remap() : driven_box.end_remap();
 }
 
@@ -191,11 +176,11 @@ void FixGearQuat::setup_pre_neighbor()
   update_bodies();
   driven_box.follow_images();
   const bool defined = step.phase == Phase::DEFINED;
-  if (!defined && !minimization.is_on()) step.take_velocities(update->ntimestep, false);
+  if (!defined && !is_minimized()) step.take_velocities(update->ntimestep, false);
   const bool from_atoms = args.infile.empty() && !any_differs(stated);
   const bool takes_over = from_atoms && (args.reinit || defined);
   const Sites::Changes found = sites.changes();
-  if (!takes_over && !minimization.is_on() && found.moved && comm->me == 0)
+  if (!takes_over && !is_minimized() && found.moved && comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: atom {} was moved away from its place in body {}, and with "
                    "reinit no, or infile, the body puts it back in the first step; use reinit yes, "
@@ -272,16 +257,6 @@ void FixGearQuat::update_bodies()
    a step
 ------------------------------------------------------------------------- */
 
-void FixGearQuat::initial_integrate(int vflag)
-{
-  begin_step(vflag, atom->f, atom->torque);
-}
-
-void FixGearQuat::final_integrate()
-{
-  end_step(atom->f, atom->torque);
-}
-
 /// f, torque: from all pair styles and fixes in the previous step.
 void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
@@ -302,15 +277,9 @@ void FixGearQuat::end_step(double **f, double **torque)
   compare_calls(world);
 }
 
-/// With keyword tolerance only, when all fixes have finished the step.
-void FixGearQuat::end_of_step()
-{
-  step.choose_next();
-}
-
 void FixGearQuat::post_run()
 {
-  if (minimization.is_on()) {
+  if (is_minimized()) {
     end_minimization();
     return;
   }
@@ -323,7 +292,7 @@ void FixGearQuat::tally_virial(int vflag, double **f)
 {
   v_init(vflag);
   if (!evflag) return;
-  const auto motion = minimization.is_on() ? Sites::Turning::NO : Sites::Turning::YES;
+  const auto motion = is_minimized() ? Sites::Turning::NO : Sites::Turning::YES;
   sites.visit_constraint_forces(f, cvflag_atom != 0, motion,
                                 [this](int i, Sites::ConstraintForce &constraint) {
                                   v_tally(1, &i, 1.0, constraint.virial, constraint.arm,
@@ -346,20 +315,10 @@ void FixGearQuat::min_setup(int vflag)
   min_projected = true;
 }
 
-void FixGearQuat::min_pre_exchange()
-{
-  minimization.fit();
-}
-
 void FixGearQuat::min_pre_neighbor()
 {
   pre_neighbor();
   minimization.measure();
-}
-
-void FixGearQuat::min_pre_force(int /*vflag*/)
-{
-  minimization.fit_all();
 }
 
 /// Fix box/relax may request the pressure next.
@@ -384,29 +343,11 @@ double FixGearQuat::min_energy(double *fextra)
   return 0.0;
 }
 
-void FixGearQuat::min_store()
-{
-  minimization.store();
-}
-
-/// A single degree of freedom, which stays 0: with it LAMMPS calls min_energy() and min_store().
-/// The minimizer moves bodies by the degrees of freedom of their atoms.
-int FixGearQuat::min_dof()
-{
-  return 1;
-}
-
-double FixGearQuat::max_alpha(double * /*hextra*/)
-{
-  return HUGE_VAL;
-}
-
 void FixGearQuat::end_minimization()
 {
   sites.place_velocities();
   ownership.note_box();
   show_bodies();
-  minimization.end();
 }
 
 /* ----------------------------------------------------------------------

@@ -30,6 +30,10 @@ FixStyle(gear/quat,FixGearQuat);
 #include "gear_quat_step.h"
 #include "gear_quat_template.h"
 
+#include "atom.h"
+#include "update.h"
+
+#include <cmath>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -46,24 +50,26 @@ class FixGearQuat : public Fix {
   void setup(int) override;
   void pre_exchange() override;
   void pre_neighbor() override;
-  void initial_integrate(int) override;
-  void final_integrate() override;
+  void initial_integrate(int vflag) override { begin_step(vflag, atom->f, atom->torque); }
+  void final_integrate() override { end_step(atom->f, atom->torque); }
   void initial_integrate_respa(int, int, int) override;
   void final_integrate_respa(int, int) override;
-  void end_of_step() override;
+  void end_of_step() override { step.choose_next(); }    ///< with keyword tolerance only
   void post_run() override;
-  void reset_dt() override;
+  void reset_dt() override { step.follow_length(); }
   void deform(int) override;
 
   void min_setup(int) override;
-  void min_pre_exchange() override;
+  void min_pre_exchange() override { minimization.fit(); }
   void min_pre_neighbor() override;
-  void min_pre_force(int) override;
+  void min_pre_force(int) override { minimization.fit_all(); }
   void min_post_force(int) override;
   double min_energy(double *) override;
-  void min_store() override;
-  int min_dof() override;
-  double max_alpha(double *) override;
+  void min_store() override { minimization.store(); }
+  /// A single degree of freedom, which stays 0: with it LAMMPS calls min_energy() and min_store().
+  /// The minimizer moves bodies by the degrees of freedom of their atoms.
+  int min_dof() override { return 1; }
+  double max_alpha(double *) override { return HUGE_VAL; }
 
   double compute_scalar() override { return sums.energy_correction() + step.energy(); }
   double compute_vector(int) override;
@@ -133,10 +139,10 @@ class FixGearQuat : public Fix {
   bool min_projected = false;     // forces were projected before a minimization begins
   int min_vflag = 0;              // vflag of the current evaluation in a minimization
 
+  bool is_minimized() const { return update->whichflag == 2; }
   void create_bodies();
   void update_bodies();
   void resume();
-  void meet_fleet();
   void begin_step(int, double **, double **);
   void end_step(double **, double **);
   void end_minimization();

@@ -29,7 +29,6 @@ void Minimization::init()
         "Fix gear/quat cannot be used with min_style {}, which does not let fixes take part; "
         "use min_style cg or sd",
         update->minimize_style);
-  on = true;
   fitted = false;
 }
 

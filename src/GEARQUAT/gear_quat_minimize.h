@@ -33,8 +33,6 @@ class Minimization : protected Pointers {
 
   /// Ends the run if the minimizer cannot move bodies.
   void init();
-  /// True between init() and end().
-  bool is_on() const { return on; }
   /// Called when bodies were made or atoms exchanged.  Collective.
   void measure();
   /// Loads are present.  Ends the run on all ranks if one is not finite; warns of rotations that
@@ -54,13 +52,11 @@ class Minimization : protected Pointers {
   void store();
   void put_back();
 
-  void end() { on = false; }
-
  private:
   Bodies &bodies;
   Ownership &ownership;
   Sites &sites;
-  bool on = false, fitted = false, warned = false;
+  bool fitted = false, warned = false;
   Column<ArmSums> moments;    ///< of all bodies here, along their axes
 
   Arms arms_of(int ibody) const

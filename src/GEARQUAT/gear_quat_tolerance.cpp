@@ -85,7 +85,7 @@ Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const St
     Pointers(lmp),
     fix(fix), bodies(bodies), time_step(time_step),
     present(RememberedLoads::scheme(scheme.compensate)), control(control), every_time(every_time),
-    remembered(scheme.compensate), repeat(lmp, fix), predicted(bodies), failed()
+    remembered(scheme.compensate), predicted(bodies), failed()
 {
   if (control.energy) this->control.eps /= force->mvv2e;
 }
@@ -292,13 +292,23 @@ void Tolerance::begin_step()
   tries = 0;
   begun_with = update->dt;
   refuse_frozen();
-  if (repeat.possible()) bodies.keep_histories();
+  if (forces) bodies.keep_histories();
 }
 
-/// The first step of a run.
+/// The first step of a run.  Rank 0 reports if no step can be repeated, once for each reason.
 void Tolerance::begin_run()
 {
-  repeat.begin_run();
+  forces = std::make_unique<Forces>(lmp, std::vector<const Fix *>{fix});
+  const std::string why = reason_not_to_repeat();
+  if (!why.empty()) {
+    forces.reset();
+    if (comm->me == 0 && why != told)
+      utils::logmesg(lmp,
+                     "Fix gear/quat tolerance: no step is repeated, because {}; errors exceed the "
+                     "tolerance where forces change suddenly\n",
+                     why);
+    told = why;
+  }
   const double fastest = over_ranks(MPI_MAX, largest_speed(), world);
   const double farthest = farthest_step(fastest);
   const bool moves_limit = fastest > 0.0 && farthest >= control.shortest;
@@ -399,7 +409,7 @@ bool Tolerance::accepts()
   errors = {all[0], all[1], all[2], all[3], all[4]};
   fresh = all[5] != 0.0;
   speed = all[6];
-  if (repeat.possible() && control.fails(step_error(), update->dt) && tries < MOST_TRIES) {
+  if (forces && control.fails(step_error(), update->dt) && tries < MOST_TRIES) {
     ++tries;
     record.repeated += 1.0;
     failed = control.repeat(step_error(), update->dt, remembered.loads(), growing);
@@ -558,22 +568,7 @@ void Tolerance::note_step(double size)
    another evaluation of the forces
 ------------------------------------------------------------------------- */
 
-void Repeat::begin_run()
-{
-  forces.reset(new Forces(lmp, {owner}));
-  const std::string why = reason();
-  if (why.empty()) return;
-  forces.reset();
-  if (comm->me == 0 && why != told)
-    utils::logmesg(lmp,
-                   "Fix gear/quat tolerance: no step is repeated, because {}; errors exceed the "
-                   "tolerance where forces change suddenly\n",
-                   why);
-  told = why;
-}
-
-/// The reason why steps cannot be repeated, empty if they can.
-std::string Repeat::reason() const
+std::string Tolerance::reason_not_to_repeat() const
 {
   if (!forces->reason().empty()) return forces->reason();
   for (const auto *one : modify->get_compute_list())
@@ -582,7 +577,7 @@ std::string Repeat::reason() const
   return "";
 }
 
-void Repeat::evaluate(int vflag)
+void Tolerance::evaluate(int vflag)
 {
   modify->clearstep_compute();             // computes have evaluated other positions
   const bigint now = update->ntimestep;    // as set by Integrate::ev_set()

@@ -12,7 +12,17 @@
    step is rejected, the caller restores the histories, calls shorten_loads() and shorten_step(), and
    repeats it.  At the end of the step: choose(), TimeStep::change(), and order_output().  After
    prepare(), shorten_loads() and choose() a new integrator is needed.  In addition,
-   announce_output() before the first step of a run. */
+   announce_output() before the first step of a run.
+
+   A step is repeated with another length during final_integrate():
+
+     predict  LAMMPS: neighbors, forces  correct
+     error too large: [undo, shorten, predict, evaluate()]  correct
+
+   Nothing else in LAMMPS has used the step at this point: only this fix moves atoms, and the forces
+   of other fixes are functions of positions and velocities (Forces).  Neighbor lists of the first
+   try are kept, since its atoms have moved less than half the skin.  Energies and virials are
+   tallied again as requested for the step. */
 
 #ifndef LMP_GEAR_QUAT_TOLERANCE_H
 #define LMP_GEAR_QUAT_TOLERANCE_H
@@ -64,36 +74,6 @@ class TimeStep : protected Pointers {
   double h = 0.0, last = 0.0;
 
   void set(double step);
-};
-
-/* Repetition of a step of LAMMPS with another length, during final_integrate().
-
-     predict  LAMMPS: neighbors, forces  correct
-     error too large: [undo, shorten, predict, evaluate()]  correct
-
-   Nothing else in LAMMPS has used the step at this point: only this fix moves atoms, and the forces
-   of other fixes are functions of positions and velocities (Forces).  Neighbor lists of the first
-   try are kept, since its atoms have moved less than half the skin.  Energies and virials are
-   tallied again as requested for the step. */
-
-class Repeat : protected Pointers {
- public:
-  Repeat(LAMMPS *lmp, const Fix *owner) : Pointers(lmp), owner(owner) {}
-
-  /// To be called when the first step of a run begins.  Rank 0 reports if no step of it can be
-  /// repeated, once for each reason.  Collective.
-  void begin_run();
-  bool possible() const { return forces != nullptr; }
-  /// Forces at the present positions into atom->f, energies and virials as in the present step.
-  /// vflag: of LAMMPS when the step began.
-  void evaluate(int vflag);
-
- private:
-  const Fix *owner;
-  std::unique_ptr<Forces> forces;    ///< null if no step can be repeated
-  std::string told;                  ///< the last reported reason
-
-  std::string reason() const;
 };
 
 class Tolerance : protected Pointers {
@@ -150,8 +130,9 @@ class Tolerance : protected Pointers {
   /// try.
   void shorten_loads();
   void shorten_step();
-  /// Forces of the next try.  vflag: of LAMMPS when the step began.
-  void evaluate(int vflag) { repeat.evaluate(vflag); }
+  /// Forces of the next try at the present positions into atom->f, energies and virials as in the
+  /// present step.  vflag: of LAMMPS when the step began.
+  void evaluate(int vflag);
   /// Chooses loads and length of the next step, and returns the length.  After the call histories
   /// have the new number of loads.  permitted: upper limit of the length.  Collective.
   double choose(double permitted);
@@ -176,7 +157,8 @@ class Tolerance : protected Pointers {
   double every_time;
   RememberedLoads remembered;
   Growth growing;
-  Repeat repeat;
+  std::unique_ptr<Forces> forces;            ///< null if no step of the run can be repeated
+  std::string told;                          ///< the last reported reason for that
   Column<RememberedLoads::Row> predicted;    ///< accelerations of bodies corrected together
   StepErrors errors;           ///< of the bodies corrected so far; of all, once judged
   double speed = 0.0;          ///< upper limit of the speeds of all sites
@@ -204,6 +186,7 @@ class Tolerance : protected Pointers {
   void warn_of_rounding() const;
   double first_step() const;
   void begin_run();
+  std::string reason_not_to_repeat() const;
   void tell_of_first_step(double instead) const;
   /// An error in the units of the user.
   double shown(double error) const;

@@ -153,7 +153,7 @@ NOT_IN_A_FILE = {
     "box Box": {COMMAND: "fixed", DERIVED: "shown reference_volume m inverse change inverse_change"},
     "box_frequency BoxFrequency": {COMMAND: "fastest period", RUN: "since"},
     "virial MolecularVirial": {COMMAND: "id", OTHERS: "sites"},
-    "time_step TimeStep": {STEP: "changing"},
+    "tolerance TimeStep": {},
     "remembered_loads Growth": {},
     "remembered_loads RememberedLoads": {
         COMMAND: "carries",
@@ -166,11 +166,11 @@ NOT_IN_A_FILE = {
     },
     "tolerance Tolerance": {
         COMMAND: "control every_time",
-        OTHERS: "fix fleet bodies time_step",
+        OTHERS: "fix bodies time_step",
         DERIVED: "present",
-        RUN: "repeat announced",
+        RUN: "forces announced",
         STEP: "predicted errors speed begun_with tries failed fresh",
-        MESSAGES: "warned_held",
+        MESSAGES: "warned_held told",
     },
     "thermostat Thermostat": {
         COMMAND: "words most_friction single_pass",
@@ -193,10 +193,12 @@ NOT_IN_A_FILE = {
         DERIVED: "sites images image ways first first_arm any_images",
         RUN: "any_forces nplacements",
     },
-    "motion Motion": {
-        COMMAND: "masks",
-        OTHERS: "fix args fleet bodies ownership others",
-        RUN: "set_up vibrations chosen of_file",
+    "step Step": {
+        COMMAND: "masks args present",
+        OTHERS: "fix fleet bodies ownership others blowup tally",
+        DERIVED: "integrator started",
+        RUN: "phase vibrations chosen of_file readers velocities_read",
+        STEP: "vflag_of_step",
         MESSAGES: "advised_step warned_values",
     },
 }

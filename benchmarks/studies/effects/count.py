@@ -16,9 +16,9 @@ from .scenes import write_molecules
 INSTALL = "install it by\n  sudo apt-get update && sudo apt-get install -y --no-install-recommends valgrind"
 HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial_integrate|final_integrate|end_of_step)\(")
 #: work of the fix for output, before the first step, and once per step for any number of bodies
-FIX = re.compile(r"LAMMPS_NS::(FixGearQuat|GearQuat::(Motion|Step))::")
+FIX = re.compile(r"LAMMPS_NS::(FixGearQuat|GearQuat::Step)::")
 ASIDE = re.compile(
-    r"FixGearQuat::show_bodies\(|GearQuat::Motion::begin_steps\(|Comm\w+::forward_comm\(int\)"
+    r"FixGearQuat::show_bodies\(|GearQuat::Step::start\(|Comm\w+::forward_comm\(int\)"
     r"|GearQuat::OtherFixes::(check|note|take)_\w+\("
 )
 ADDRESS = re.compile("0x[0-9a-f]+")

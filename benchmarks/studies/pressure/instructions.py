@@ -16,7 +16,7 @@ MESH = (
     (re.compile(r"LAMMPS_NS::GearQuat::Box::show\("), re.compile(r"::predict\(")),
 )
 #: evaluations of the start, which are not part of a step
-START = re.compile(r"LAMMPS_NS::GearQuat::Motion::begin_steps\(")
+START = re.compile(r"LAMMPS_NS::GearQuat::Step::start\(")
 RUN = re.compile(r"LAMMPS_NS::Verlet::run\(")
 
 
