@@ -358,12 +358,6 @@ double Barostat::period_for_drive(double omega) const
   return rounded_up(needed);
 }
 
-/// The shortest damping time of a box that oscillates too fast.
-double Barostat::period_for_box(double h) const
-{
-  return std::max(frequency.needed_period(h), period_for_drive(frequency.value()));
-}
-
 void Barostat::advance_box(double h, int values)
 {
   const double twice = twice_kinetic_of_box();
@@ -793,25 +787,6 @@ void Barostat::leave_probe(int side)
   for (int k = 0; k < 3; ++k)
     if (asked.on[k]) stiffest = std::max(stiffest, -change[k] / (2.0 * probing_strain()));
   frequency.begin(std::sqrt(stiffest));
-  const double radians = frequency.radians(width), part = frequency.part(width);
-  if (part < BoxFrequency::WARNED || changing_step) return;
-  if (part > BoxFrequency::REFUSED)
-    error->all(FLERR,
-               "Fix gear/quat: the box would oscillate by {:.2g} radians in a step, and the method "
-               "follows {:.2g}; use a Pdamp of {:.2g} or longer",
-               radians, frequency.followed(), period_for_box(width));
-  warn_of_box("", width);
-}
-
-/// when: the words before "the box".
-void Barostat::warn_of_box(const std::string &when, double h)
-{
-  warned_box = true;
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: {}the box oscillates by {:.2g} radians in a step, {:.0f} % of "
-                   "the limit of the method; use a Pdamp of {:.2g} or longer",
-                   when, frequency.radians(h), 100.0 * frequency.part(h), period_for_box(h));
 }
 
 double Barostat::longest_step() const
@@ -825,9 +800,6 @@ void Barostat::watch_box(double h)
   frequency.note(now, rate, masses(), h);
   note_drive(now);
   watch_mesh();
-  if (warned_box || changing_step || !frequency.is_settled()) return;
-  if (frequency.part(h) >= BoxFrequency::WARNED)
-    warn_of_box(fmt::format("in step {} ", update->ntimestep), h);
 }
 
 /// LAMMPS chooses the mesh only before a run, but Ewald's wave vectors in every box.
@@ -850,13 +822,14 @@ void Barostat::watch_mesh()
   }
 }
 
-Cause Barostat::instability(double h) const
+std::vector<Rate> Barostat::rates(double h, bool ahead) const
 {
-  if (frequency.part(h) < 1.0) return Thermostat::instability(h);
-  return {fmt::format("The box became unstable first: it oscillates by {:.2g} radians in a step of "
-                      "{:g}, and the method follows {:.2g}",
-                      frequency.radians(h), h, frequency.followed()),
-          fmt::format("Use a Pdamp of {:.2g} or longer", frequency.needed_period(h))};
+  std::vector<Rate> rows = Thermostat::rates(h, ahead);
+  if (!frequency.is_settled()) return rows;
+  const double period = std::max(frequency.needed_period(h), period_for_drive(frequency.value()));
+  rows.push_back({"the angle of the oscillation of the box is", frequency.radians(h),
+                  frequency.followed(), fmt::format("use a Pdamp of {:g} or longer", period)});
+  return rows;
 }
 
 /// Collective.

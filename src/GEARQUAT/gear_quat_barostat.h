@@ -77,7 +77,7 @@ class Barostat : public Thermostat {
   void put_back() override;
   double longest_step() const override;
   void errors(double h, int values, const Include &include) const override;
-  Cause instability(double h) const override;
+  std::vector<Rate> rates(double h, bool ahead) const override;
   void follow_changes(double h) override;
   void rescale(double ratio) override;
 
@@ -141,7 +141,7 @@ class Barostat : public Thermostat {
   Tensor tensor;    ///< of owned bodies, in a pass
 
   BoxFrequency frequency;
-  bool warned_box = false, warned_mesh = false;
+  bool warned_mesh = false;
   double longest_body = 0.0;    ///< largest distance of a site from the owner atom of its body
   static constexpr double IN_A_STEP = 0.03;    ///< limit for the change of the box in a step
   Upper strongest;                             ///< drive in this run, as magnitudes
@@ -173,14 +173,12 @@ class Barostat : public Thermostat {
   double period() const;
   double probing_strain() const;
   void watch_box(double h);
-  void warn_of_box(const std::string &when, double h);
   void watch_mesh();
   void refuse_box() const;
   void find_longest_body();
   void refuse_narrow_box(int direction, double edge) const;
   void note_drive(const Upper &now);
   double period_for_drive(double omega) const;
-  double period_for_box(double h) const;
   void set_heat(const Scheme &scheme);
   void prepare(double h);
   void advance_box(double h, int values);

@@ -18,13 +18,9 @@ namespace LAMMPS_NS::GearQuat {
 
 class BoxFrequency {
  public:
-  /// Thresholds for the fastest oscillation, as fractions of the limit of the method: a warning
-  /// above the first, an error above the second.
-  static constexpr double WARNED = 0.6, REFUSED = 0.95;
-
-  /// The number of radians per step that the method follows.
+  /// The fastest stable oscillation, in radians per step, and the one that is followed for long.
   void set_fastest(double radians) { fastest = radians; }
-  double followed() const { return fastest; }
+  double followed() const { return FOLLOWED * fastest; }
   /// The damping time of the box; sums fade over two of them.
   void set_period(double time) { period = time; }
   void begin_run() { since = 0.0; }
@@ -49,27 +45,27 @@ class BoxFrequency {
     last = drive;
     since += std::fabs(h);
   }
-  /// True if the sums represent this run.
-  bool is_settled() const { return since >= MEMORY * period; }
+  /// True if the sums represent this run, or if the start has measured the frequency.
+  bool is_settled() const { return since >= MEMORY * period || along == 0.0; }
 
   double value() const
   {
     return along > 0.0 && against > 0.0 ? std::sqrt(against / along) : probed;
   }
-  /// Radians in a step h, and their ratio to the limit of the method.
+  /// Radians in a step h.
   double radians(double h) const { return value() * std::fabs(h); }
-  double part(double h) const { return radians(h) / fastest; }
   /// Infinite if the box does not oscillate.
-  double longest_step() const
-  {
-    return value() > 0.0 ? 0.5 * WARNED * fastest / value() : HUGE_VAL;
-  }
+  double longest_step() const { return value() > 0.0 ? 0.5 * followed() / value() : HUGE_VAL; }
   template <class V> void fields(V &v) { v(last, against, along, probed); }
-  /// A damping time without a warning, rounded up.
-  double needed_period(double h) const { return rounded_up(1.05 * period * part(h) / WARNED); }
+  /// A damping time with which it is followed, rounded up.
+  double needed_period(double h) const
+  {
+    return rounded_up(1.05 * period * radians(h) / followed());
+  }
 
  private:
   static constexpr double MEMORY = 2.0;    // damping times
+  static constexpr double FOLLOWED = 0.6;
 
   double fastest = 0.0, period = 0.0;
   Upper last;                           ///< the drive of the last step

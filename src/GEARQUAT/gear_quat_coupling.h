@@ -21,20 +21,16 @@
 
 #include "gear_quat_bodies.h"
 #include "gear_quat_fields.h"
+#include "gear_quat_limits.h"
 #include "gear_quat_remembered_loads.h"
-#include "gear_quat_startup.h"
 #include "pointers.h"
 
 #include <functional>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS::GearQuat {
-
-/// The cause of an instability and a remedy: sentences without full stops, empty for none.
-struct Cause {
-  std::string what, remedy;
-};
 
 /// The nodes of a start, centered at the present time.
 struct StartNodes {
@@ -105,8 +101,9 @@ class Coupling : protected Pointers {
   /// Calls `include` with the errors of the coupling in this step of h.  Local.
   using Include = std::function<void(const StepErrors &)>;
   virtual void errors(double /*h*/, int /*values*/, const Include & /*include*/) const {}
-  /// The cause if the coupling is unstable in steps of h, otherwise empty.  Local.
-  virtual Cause instability(double /*h*/) const { return {}; }
+  /// Its rows of the table of rates, for steps of h: those expected in the run after begin_run() if
+  /// `ahead`, otherwise the present ones.  Local.
+  virtual std::vector<Rate> rates(double /*h*/, bool /*ahead*/) const { return {}; }
 
   // the start
 
@@ -128,7 +125,6 @@ class Coupling : protected Pointers {
   // (side -1), and a little larger (1), with the scaled centers of the start; states are restored.
   virtual bool probes() const { return false; }
   virtual void enter_probe(int /*side*/) {}
-  /// Ends the run if the box would oscillate too fast for the step.
   virtual void leave_probe(int /*side*/) {}
   /// LAMMPS' vflag for the evaluation of forces at nodes.  Local.
   virtual int vflag() const { return 0; }

@@ -3,23 +3,16 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Limits of a method with steps of h: free rotations, forces without derivatives and friction, each
-   found by trial with the method itself, and vibrations, whose trials are too long for a run.
-
-   The fastest rotation depends on the number of values, on the passes and on the moments of
-   inertia; it is found by a trial of a free rotation.
+/* What a method follows in steps of h: vibrations and friction, found by trial with the method
+   itself, and forces without derivatives.
 
    Forces without derivatives are random, or due to collisions that last a single step.  The
-   derivatives that a history computes from them heat the bodies.  A force that acts in one step
-   only changes the velocity in the following steps by d_1, d_2, ..., whose sum is 1 in units of h
-   F/m.  Forces that are independent from step to step change the velocity in a step by sum d_k^2
-   times the correct mean square.
+   derivatives that a history computes from them heat the bodies.
 
-   The friction of a coupling is treated separately.  A step of h maps the rows of a free body under
-   the constant friction xi: it predicts, then adds c_j times the residual of
-   Integrator::correct_pass().  This map is linear and depends on h xi alone.  If its spectral
-   radius is 1 or less, the method is stable.  Far from its target a chain has a friction of several
-   times 1/tau. */
+   A step of h maps the rows of a free body under the constant friction xi of a coupling: it
+   predicts, then adds c_j times the residual of Integrator::correct_pass().  This map is linear and
+   depends on h xi alone.  If its spectral radius is 1 or less, the method is stable.  Far from its
+   target a chain has a friction of several times 1/tau. */
 
 #ifndef GEAR_QUAT_LIMITS_H
 #define GEAR_QUAT_LIMITS_H
@@ -47,44 +40,6 @@ inline BodyState kicked(const RigidBody &body, const BodyState &before, const Lo
     s.omega_body[k] += h * omegadot_body[k];
   }
   return s;
-}
-
-constexpr int FLIGHT_STEPS = 100, LONG_FLIGHT_STEPS = 5000;
-
-/// Radians in a step; a slower rotation is stable with all methods.
-constexpr double FLIGHT_SLOW = 0.1;
-
-/// False if the body becomes unstable within this number of steps without any load.
-inline bool survives_flight(const Scheme &scheme, const RigidBody &body, const BodyState &state,
-                            double h, int steps = FLIGHT_STEPS)
-{
-  const Integrator integrator(scheme, h);
-  const MotionLimits limits(h, std::numeric_limits<double>::infinity());
-  const Load none = Load();
-  std::vector<double> history(scheme.size());    // allocated at run time: a fixed array would need
-                                                 // the largest size
-  double *rows = history.data();
-  BodyState still = state;
-  for (double &component : still.velocity) component = 0.0;
-  if (!limits.keep(still)) return false;
-  seed(scheme, body, local_series(body, still, none, h), h, h, rows);
-  for (int step = 0; step < steps; ++step) {
-    integrator.predict(body, rows);
-    if (!limits.keep_velocities(integrator.body_state(body, rows))) return false;
-    integrator.correct(body, none, rows);
-    if (!limits.keep(integrator.body_state(body, rows))) return false;
-  }
-  return true;
-}
-
-/// The longest step, among h, h/2, h/3, ..., that is stable in the long trial.
-inline double longest_step(const Scheme &scheme, const RigidBody &body, const BodyState &state,
-                           double h)
-{
-  int parts = 1;
-  while (parts < 1000 && !survives_flight(scheme, body, state, h / parts, LONG_FLIGHT_STEPS))
-    parts += parts < 10 ? 1 : parts / 5;
-  return h / parts;
 }
 
 /// The fastest harmonic motion that is stable, in radians per step, from a trial of each method in
@@ -121,34 +76,19 @@ inline double rounded_up(double number)
   return std::ceil(number / unit * (1.0 - 1.0e-12)) * unit;
 }
 
-/* ---------------------------------------------------------------------- */
+/// A row of the table of rates: a motion that every step has to resolve.
+struct Rate {
+  std::string what;      ///< "the angle of the oscillation of the box is"
+  double radians;        ///< in a step; of a friction the part of a velocity
+  double limit;          ///< radians that the method follows for long
+  std::string remedy;    ///< "use a Pdamp of 3 or longer"
+
+  double part() const { return radians / limit; }
+};
 
 /// Forces without derivatives: random ones, as of fix langevin or a DPD fluid, and those of
 /// contacts and of pair styles with friction alone.
 enum class Noise { NONE, RANDOM, DISSIPATIVE };
-
-/// sum d_k^2 of the center of mass, with these coefficients.
-inline double noise_gain(const Scheme &scheme, const CorrectorCoefficients &c)
-{
-  constexpr int STEPS = 1000;    // roots of 0.99 have decayed
-  const int n = scheme.values(), order = scheme.first() ? 1 : 2;
-  double rows[MAX_VALUES] = {}, gain = 0.0;
-  for (int step = 0; step < STEPS; ++step) {
-    const double before = rows[order - 1];
-    Nordsieck<1>::predict(rows, n);
-    const double residual = (step == 0 ? 1.0 / order : 0.0) - rows[order];
-    Nordsieck<1>::correct<1>(rows, n, c.c.data(), 0, &residual);
-    const double change = rows[order - 1] - before;
-    gain += change * change;
-  }
-  return gain;
-}
-
-/// The noise gain with the coefficients of the scheme.
-inline double noise_gain(const Scheme &scheme)
-{
-  return noise_gain(scheme, CorrectorCoefficients(scheme));
-}
 
 /// False if such forces heat or cool bodies.  With friction alone four of Gear's values follow any
 /// part up to half of a momentum in a step.  With random forces only velocity Verlet gives bodies
@@ -160,74 +100,43 @@ inline bool suits_noise(const Scheme &scheme, Noise noise)
   return !scheme.tuned && scheme.values() <= (scheme.first() ? 3 : 4);
 }
 
-using RowMap = std::array<std::array<double, MAX_VALUES>, MAX_VALUES>;
-
-inline RowMap product(const RowMap &a, const RowMap &b, int n)
-{
-  RowMap ab = {};
-  for (int i = 0; i < n; ++i)
-    for (int l = 0; l < n; ++l)
-      for (int j = 0; j < n; ++j) ab[i][j] += a[i][l] * b[l][j];
-  return ab;
-}
-
-inline double largest_of(const RowMap &a, int n)
-{
-  double largest = 0.0;
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) largest = std::max(largest, std::fabs(a[i][j]));
-  return std::isfinite(largest) ? largest : std::numeric_limits<double>::infinity();
-}
-
-/* ---------------------------------------------------------------------- */
-
+/// The largest part h xi of a velocity that the friction of a coupling may take in a step.
 class FrictionLimit {
  public:
+  static constexpr double MOST = 4.0, ACCURATE = 0.5;
+
   /// The largest h xi that is stable and is not a large part of a momentum in a step.
   static double of(const Scheme &scheme) { return std::min(stable(scheme), ACCURATE); }
 
   /// The smallest unstable h xi, positive; MOST if there is none below.
   static double stable(const Scheme &scheme)
   {
-    const FrictionLimit map(scheme);
+    constexpr double LEAST = 0.02, RATIO = 1.05;
+    constexpr int HALVINGS = 8;
+    const CorrectorCoefficients c(scheme);
     double stable = LEAST;
-    while (stable < MOST && !map.grows(stable * RATIO)) stable *= RATIO;
+    while (stable < MOST && !grows(scheme, c, stable * RATIO)) stable *= RATIO;
     if (stable >= MOST) return MOST;
     double unstable = stable * RATIO;
     for (int n = 0; n < HALVINGS; ++n) {
       const double middle = 0.5 * (stable + unstable);
-      (map.grows(middle) ? unstable : stable) = middle;
+      (grows(scheme, c, middle) ? unstable : stable) = middle;
     }
     return stable;
   }
 
-  static constexpr double MOST = 4.0, ACCURATE = 0.5;
-
  private:
-  static constexpr double LEAST = 0.02, RATIO = 1.05;
-  static constexpr int HALVINGS = 8;
-  // powers of the map up to 2^16; the powers of a stable map grow at most by this factor
-  static constexpr int SQUARINGS = 16;
-  static constexpr double TRANSIENT = 1.0e6;
-
-  const bool first;
-  const int n;    ///< rows of momenta, or of velocities
-  CorrectorCoefficients c;
-
-  explicit FrictionLimit(const Scheme &scheme) :
-      first(scheme.first()), n(scheme.values() - !first), c(scheme)
-  {
-  }
+  using Map = std::array<std::array<double, MAX_VALUES>, MAX_VALUES>;
 
   /// The rows of a velocity v in the second formulation are the rows of a position after the first
   /// row, times (j + 1) and divided by h.
-  RowMap map(double friction) const
+  static Map map(bool first, const CorrectorCoefficients &c, double friction, int n)
   {
-    RowMap a = {};
+    Map a = {};
     const double share = friction * (first ? c.c[0] : 0.5 * c.c[1]);
     for (int column = 0; column < n; ++column) {
-      double predicted[MAX_VALUES];
-      for (int j = 0; j < n; ++j) predicted[j] = j > column ? 0.0 : binomial(column, j);
+      double predicted[MAX_VALUES] = {1.0};    // binomial coefficients
+      for (int j = 1; j < n; ++j) predicted[j] = predicted[j - 1] * (column - j + 1) / j;
       const double residual = (-friction * predicted[0] - predicted[1]) / (1.0 + share);
       for (int j = 0; j < n; ++j) {
         const double feeds = first ? c.c[j] : 0.5 * (j + 1) * c.c[j + 1];
@@ -237,21 +146,25 @@ class FrictionLimit {
     return a;
   }
 
-  static double binomial(int n, int k)
+  /// True if the powers of the map up to 2^16 grow; those of a stable map grow at most by TRANSIENT.
+  static bool grows(const Scheme &scheme, const CorrectorCoefficients &c, double friction)
   {
-    double product = 1.0;
-    for (int i = 0; i < k; ++i) product *= double(n - i) / (i + 1);
-    return product;
-  }
-
-  bool grows(double friction) const
-  {
-    RowMap a = map(friction);
+    constexpr int SQUARINGS = 16;
+    constexpr double TRANSIENT = 1.0e6;
+    const int n = scheme.values() - !scheme.first();    // rows of momenta, or of velocities
+    Map a = map(scheme.first(), c, friction, n);
     for (int k = 0; k < SQUARINGS; ++k) {
-      a = product(a, a, n);
-      const double largest = largest_of(a, n);
+      Map squared = {};
+      double largest = 0.0;
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          for (int l = 0; l < n; ++l) squared[i][j] += a[i][l] * a[l][j];
+          largest = std::max(largest, std::fabs(squared[i][j]));
+          if (!std::isfinite(squared[i][j])) return true;
+        }
       if (largest > TRANSIENT) return true;
       if (largest < 1.0e-3) return false;
+      a = squared;
     }
     return false;
   }
@@ -264,29 +177,6 @@ inline double friction_bound(const Chain &chain, const ChainTarget &target, doub
   const double part = twice_kinetic / (target.freedoms * target.kt);
   const double begun = chain.friction() * target.period;
   return std::sqrt(begun * begun + std::max(0.0, part - 1.0 - std::log(part))) / target.period;
-}
-
-/// The largest |xi_1| (1/time) that this chain reaches with an ideal gas in steps of h, from a trial
-/// over two damping times; infinite if the steps are too long for the chain.  The friction of bodies
-/// with potential energy is not larger, because an ideal gas stores heat only as kinetic energy.
-inline double friction_on_trial(Chain chain, const ChainTarget &target, double twice_kinetic,
-                                double h)
-{
-  constexpr int VALUES = 5, PASSES = 2;
-  const double size = std::fabs(h);
-  double largest = std::fabs(chain.friction());
-  for (double time = 0.0; time < 2.0 * target.period; time += size) {
-    const double before = chain.friction();
-    double twice = twice_kinetic;
-    for (int pass = 0; pass < PASSES; ++pass) {
-      if (!chain.advance(target, twice, size, VALUES)) return HUGE_VAL;
-      twice = twice_kinetic * std::exp(-size * (before + chain.friction()));
-    }
-    chain.conclude();
-    twice_kinetic = twice;
-    largest = std::max(largest, std::fabs(chain.friction()));
-  }
-  return largest;
 }
 
 }    // namespace LAMMPS_NS::GearQuat

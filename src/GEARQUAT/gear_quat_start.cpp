@@ -32,15 +32,9 @@ MotionSums GearQuat::sums_by_loads(const Bodies &bodies)
   return here;
 }
 
-void Starter::choose_by_loads()
-{
-  if (!choose) return;
-  scheme = choose(sums_by_loads(*bodies));
-}
-
 void Starter::seed_local(int terms, double h)
 {
-  choose_by_loads();
+  scheme = choose(sums_by_loads(*bodies));
   if (coupling) {
     coupling->measure();
     coupling->seed_local(h, terms);
@@ -347,7 +341,6 @@ void Start::choose(const StartFound &start, const std::vector<Bodies::Snapshot> 
 {
   for (size_t p = 0; p < starters.size(); ++p) {
     Starter &one = starters[p];
-    if (!one.choose) continue;
     const int pairs = std::min(start.pairs, PAIRS_THAT_TELL);
     one.scheme = one.choose(sums_of(one, snapshots[p], pairs, start.spacing));
   }

@@ -32,8 +32,8 @@ struct Starter {
   Coupling *coupling;    ///< null if there is none
   Scheme scheme;
   bool needed;    ///< false if there are histories, which are kept if not all rows can be found
-  /// Chooses the scheme for this motion, which histories have after the call; null if it is given.
-  /// Collective.
+  /// Judges this motion, and chooses the scheme unless it is given: histories have the returned
+  /// scheme.  Collective.
   std::function<Scheme(const MotionSums &)> choose;
   /// Predicts this choice; null if the scheme is given.  Collective.
   std::function<Scheme(const MotionSums &)> foresee;
@@ -45,8 +45,6 @@ struct Starter {
   /// Histories of all bodies from states and loads alone.  terms: 2 for the paper's start, in which
   /// all derivatives from the second on are zero, or 3 with the loads.  Collective.
   void seed_local(int terms, double h);
-  /// Chooses the scheme from loads.  Collective.
-  void choose_by_loads();
 };
 
 /// History of one body from its state, with a scaled center, and from the load that acts on it.

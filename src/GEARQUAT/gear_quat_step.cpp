@@ -82,9 +82,8 @@ Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &flee
     Pointers(lmp),
     fix(fix), args(args), ownership(ownership), time_step(lmp),
     coupling(make_coupling(lmp, fix, args, bodies, sites)), fleet(fleet), bodies(bodies),
-    sites(sites), others(others), present(args.scheme),
-    blowup(lmp, bodies, ownership, sites, present, args.control.shortest), tally(std::move(tally)),
-    vibrations(lmp, bodies)
+    sites(sites), others(others), present(args.scheme), blowup(lmp, args, bodies, sites),
+    tally(std::move(tally))
 {
   blowup.coupling = coupling.get();
   if (args.control.eps > 0.0)
@@ -163,26 +162,25 @@ void Step::impose_masks()
 void Step::begin_run()
 {
   const double h = length();
-  if (update->nsteps > 0) blowup.pace = pace_of(lmp, bodies);
-  if (!started && !tolerance && update->nsteps > 0)
-    check_spins(lmp, bodies,
-                args.automatic_values ? scene_of(sums_by_loads(bodies)).choose(args.scheme).scheme
-                                      : scheme(),
-                blowup.pace, h);
-  if (coupling && args.automatic_values && !started && !args.scheme.first()) {
-    Scheme damped = args.scheme;    // the strongest friction that any number of values permits
-    damped.rows = SECOND_FEWEST;
-    coupling->set_scheme(damped);
-  }
   if (coupling) coupling->begin_run(!started, tolerance ? std::min(h, longest_step()) : h);
   if (tolerance) tolerance->announce_output();
-  vibrations.begin_run();
+  if (update->nsteps > 0) look_at_rates(edge_by_loads(MotionSums::MOST_BY_MEAN), true);
+  if (update->nsteps > 0 && !started) {    // before anything has changed
+    find_limits(h);
+    examine_all(atom->f);
+  }
   phase = Phase::SET_UP;
 }
 
-/// After a run of no step, the next run may begin without a setup.
+/// After a run of no step, the next run may begin without a setup.  A short run may have begun at
+/// rest, where loads show no frequency.
 void Step::end_run()
 {
+  constexpr int SHORT = 100;
+  if (started && update->nsteps >= SHORT) {
+    look_at_rates(edge_by_loads(MotionSums::LEAST_BY_MEAN), false);
+    warn_of_rates();
+  }
   if (phase == Phase::ENDED) phase = Phase::BETWEEN;
 }
 
@@ -367,15 +365,14 @@ bool Step::has_to_start(double **f)
 Starter Step::starter(bool needed)
 {
   if (needed && coupling) coupling->refer_to_box(length());
-  std::function<Scheme(const MotionSums &)> choose, foresee;
-  if (args.automatic_values) {
-    choose = [this](const MotionSums &here) {
-      return choose_scheme(here);
-    };
+  std::function<Scheme(const MotionSums &)> foresee;
+  const auto choose = [this](const MotionSums &here) {
+    return choose_scheme(here);
+  };
+  if (args.automatic_values)
     foresee = [this](const MotionSums &here) {
       return scene_of_start(here).choose(args.scheme).scheme;
     };
-  }
   return {fix, &bodies, &ownership, &sites, coupling.get(), scheme(), needed, choose, foresee};
 }
 
@@ -383,9 +380,10 @@ Starter Step::starter(bool needed)
 void Step::note_start()
 {
   started = true;
-  // after the checks of the start, since an error of a coupling may have the same cause
-  if (chosen) warn_of_vibrations(*chosen, scheme(), true);
-  chosen.reset();
+  look_at_rates(edge_of_start, true);
+  warn_of_rates();
+  // an estimate for a blow-up
+  if (edge_of_start == 0.0) look_at_rates(edge_by_loads(MotionSums::MOST_BY_MEAN), true);
   if (tolerance) make_integrator();
 }
 
@@ -510,18 +508,24 @@ bool Step::read(Fields &file)
    the number of values, where the command does not state it
 ------------------------------------------------------------------------- */
 
-/// Input to the choice.  here: of the bodies that this rank owns.  Collective.
-ChoiceOfValues Step::scene_of(const MotionSums &here) const
+/// Sums over all ranks.
+MotionSums Step::sums_of(const MotionSums &here) const
 {
   MotionSums all = here;
   const auto sums = over_ranks(MPI_SUM, all.sums, world);
   std::copy(sums.begin(), sums.end(), all.sums);
+  return all;
+}
+
+/// Input to the choice.  here: of the bodies that this rank owns.  Collective.
+ChoiceOfValues Step::scene_of(const MotionSums &here) const
+{
+  const MotionSums all = sums_of(here);
   ChoiceOfValues scene;
   scene.edge = bodies.number() > 0 ? all.fast_edge(length()) : HUGE_VAL;
   scene.exact = all.knows_derivatives(length());
   scene.noise = noise_of_forces(lmp, ownership).noise;
   scene.may_be_gear = !args.states("corrector");
-  scene.automatic = args.automatic_values;
   return scene;
 }
 
@@ -537,13 +541,14 @@ ChoiceOfValues Step::scene_of_start(const MotionSums &here) const
 Scheme Step::choose_scheme(const MotionSums &here)
 {
   const ChoiceOfValues scene = scene_of_start(here);
-  const ChoiceOfValues::Choice choice = scene.choose(args.scheme);
-  edge_rate = scene.edge / std::fabs(length());
-  tell_choice(scene, choice);
-  chosen = scene;
-  warned_values = false;
-  set_scheme(choice.scheme);
-  return choice.scheme;
+  if (args.automatic_values) {
+    const ChoiceOfValues::Choice choice = scene.choose(args.scheme);
+    edge_rate = scene.edge / std::fabs(length());
+    tell_choice(scene, choice);
+    set_scheme(choice.scheme);
+  }
+  edge_of_start = scene.exact && scene.noise == Noise::NONE ? scene.edge : 0.0;
+  return scheme();
 }
 
 /// Collective.
@@ -572,61 +577,57 @@ void Step::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice
                  why);
 }
 
-/// Warns once, and again if only a much shorter step is short enough.
-void Step::warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins)
-{
-  const double advised = std::fabs(length()) * scene.advised_part(scheme);
-  if (!scene.too_long(scheme) || advised * ChoiceOfValues::BAND > advised_step) return;
-  advised_step = advised;
-  if (comm->me != 0) return;
-  const std::string who = scene.chooses_longest(scheme)
-      ? "any number of values"
-      : fmt::format("{} values of formulation {} and corrector {}", scheme.values(),
-                    word_of(scheme.formulation), scheme.tuned ? "tuned" : "gear");
-  const char *otherwise = "";
-  if (begins)
-    otherwise = ", or, if atoms overlap, begin with a run with keywords tolerance and temp";
-  else if (!scene.chooses_longest(scheme) && !scheme.first())
-    otherwise = ", or leave out keywords values and corrector";
-  error->warning(FLERR,
-                 "Fix gear/quat {}: {}vibrations of {:.2g} radians in a step are "
-                 "more than {} can follow for long; use a time step of {:g} or shorter{}",
-                 fix->id, begins ? "" : fmt::format("at step {} ", update->ntimestep), scene.edge,
-                 who, rounded_down(advised), otherwise);
-}
+/* ----------------------------------------------------------------------
+   the table of rates
+------------------------------------------------------------------------- */
 
-void Step::look_at_vibrations()
+/// The table for the present step.  edge: radians of vibrations in a step; ahead: with the friction
+/// expected in this run.  The coupling is first, because it also accelerates bodies.  Collective.
+void Step::look_at_rates(double edge, bool ahead)
 {
   if (tolerance) return;
-  // short runs with a stated number are not examined, so that effects that are off are free
-  if (!args.automatic_values && update->laststep - update->firststep < Vibrations::FIRST_WINDOW)
-    return;
-  if (!vibrations.note_step(length())) return;
-  ChoiceOfValues scene = scene_of(vibrations.sums());
-  scene.edge = MotionSums::true_edge(scene.edge);
-  if (scene.exact && scene.too_long(scheme())) {
-    warn_of_vibrations(scene, scheme(), false);
-    return;
-  }
-  if (scene.exact && args.automatic_values) warn_of_values(scene);
+  std::vector<Rate> &table = blowup.rates;
+  table.clear();
+  const double h = std::fabs(length());
+  if (coupling) table = coupling->rates(h, ahead);
+  const auto add = [&](const char *what, double radians, double limit, double advised) {
+    table.push_back(
+        {what, radians, limit,
+         fmt::format("use a time step of {:g} or shorter", rounded_down(h * advised / radians))});
+  };
+  double omega = 0.0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    omega = std::max(omega, GearQuat::length(bodies.state_of(ibody).omega_body));
+  omega = over_ranks(MPI_MAX, omega, world);
+  // free rotations are exact in formulation momentum, but the forces on them are not
+  constexpr double PART = 2.0 / 3.0, TURN = 0.5;
+  const Scheme &now = scheme();
+  const double longest = ChoiceOfValues::longest_edge(now), stable = fastest_oscillation(now);
+  add("the angle of vibrations is", edge, longest, PART * longest);
+  add("the angle by which the fastest body turns is", h * omega,
+      now.momentum() ? MotionLimits::TURN : stable, std::min(PART * stable, TURN));
 }
 
-/// Warns once for these histories, which keep their number of values.
-void Step::warn_of_values(const ChoiceOfValues &scene)
+/// Radians of vibrations in a step by the present loads, of many bodies; 0 if they do not show
+/// them.  Collective.
+double Step::edge_by_loads(double by_mean) const
 {
-  const int present = scheme().values();
-  const ChoiceOfValues::Choice suits = scene.choose(args.scheme, present);
-  if (warned_values || suits.reason != ChoiceOfValues::Reason::MOTION ||
-      suits.scheme.values() >= present)
+  constexpr bigint MANY = 10;
+  const MotionSums all = sums_of(sums_by_loads(bodies));
+  const double edge = by_mean * all.mean_edge(length());
+  const bool noise = noise_of_forces(lmp, ownership).noise != Noise::NONE;
+  return bodies.number() >= MANY && std::isfinite(edge) && !noise ? edge : 0.0;
+}
+
+/// Rank 0 warns once of the first rate that is too large; others may have the same cause.
+void Step::warn_of_rates()
+{
+  for (const auto &rate : blowup.rates) {
+    if (!(rate.part() > 1.0)) continue;
+    if (warned.insert(rate.what).second && comm->me == 0)
+      error->warning(FLERR, "Fix gear/quat {}: {}", fix->id, words_of(rate));
     return;
-  warned_values = true;
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat {}: at step {} vibrations of {:.2g} "
-                   "radians in a step require {} values, but histories began with {} for a slower "
-                   "motion; use keyword values {}, or define the fix again before the next run",
-                   fix->id, update->ntimestep, scene.edge, suits.scheme.values(), present,
-                   suits.scheme.values());
+  }
 }
 
 /// Returns the reason to start histories again with another number of values, null for none.
@@ -681,7 +682,6 @@ void Step::end(double **f, double **torque)
   if (bodies.have_copies()) ownership.spread_moved();
   sites.place(true);
   if (is_due(readers.of_atoms)) comm->forward_comm();    // ghosts are where forces were evaluated
-  look_at_vibrations();
 }
 
 void Step::gather(double **f, double **torque)
@@ -816,10 +816,7 @@ void Step::shorten()
 void Step::accept(double **f)
 {
   const double h = integrator->step();
-  if (tolerance || coupling) {    // otherwise correct_body() has done this
-    for (const auto *list : {&bodies.points, &bodies.tops})
-      for (const int ibody : *list) examine(ibody, f);
-  }
+  if (tolerance || coupling) examine_all(f);    // otherwise correct_body() has done this
   if (coupling) coupling->note_step(h);
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
@@ -851,6 +848,12 @@ inline void Step::examine(int ibody, double **f)
 {
   const BodyState &state = bodies.state_of(ibody);
   if (!blowup.limits.keep(state)) blowup.stop(ibody, state, integrator->step(), f);
+}
+
+void Step::examine_all(double **f)
+{
+  for (const auto *list : {&bodies.points, &bodies.tops})
+    for (const int ibody : *list) examine(ibody, f);
 }
 
 /// True if output is due in this step, or if the step is a multiple of one of the periods.

@@ -30,13 +30,12 @@
 #include "gear_quat_scene.h"
 #include "gear_quat_start.h"
 #include "gear_quat_tolerance.h"
-#include "gear_quat_vibrations.h"
 
 #include <array>
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -95,6 +94,7 @@ class Step : protected Pointers {
   void impose_masks();
   /// Called when poses, velocities and loads are present.
   void begin_run();
+  /// Warns of rates that have become too large for the step.
   void end_run();
   /// Bodies, and then their histories, adopt velocities that other fixes have given to atoms, at the
   /// end of that step if `end`.
@@ -211,18 +211,17 @@ class Step : protected Pointers {
 
   // the number of values
 
-  double edge_rate = 0.0;    ///< fast edge divided by the step, if the number was chosen
-  Vibrations vibrations;
-  double advised_step = HUGE_VAL;          ///< by the last warning about vibrations
-  std::optional<ChoiceOfValues> chosen;    ///< input to the choice of a start that has not ended
-  bool warned_values = false;
+  double edge_rate = 0.0;          ///< fast edge divided by the step, if the number was chosen
+  double edge_of_start = 0.0;      ///< radians of vibrations in a step, if the start has found them
+  std::set<std::string> warned;    ///< of these rates
+  MotionSums sums_of(const MotionSums &here) const;
   ChoiceOfValues scene_of(const MotionSums &here) const;
   ChoiceOfValues scene_of_start(const MotionSums &here) const;
   Scheme choose_scheme(const MotionSums &here);
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
-  void warn_of_vibrations(const ChoiceOfValues &scene, const Scheme &scheme, bool begins);
-  void look_at_vibrations();
-  void warn_of_values(const ChoiceOfValues &scene);
+  void look_at_rates(double edge, bool ahead);
+  double edge_by_loads(double by_mean) const;
+  void warn_of_rates();
   const char *another_scheme_suits();
 
   // a step
@@ -235,6 +234,7 @@ class Step : protected Pointers {
   void shorten();
   void accept(double **f);
   void examine(int ibody, double **f);
+  void examine_all(double **f);
   void find_limits(double h);
   bool is_due(const std::vector<int> &periods) const;
 

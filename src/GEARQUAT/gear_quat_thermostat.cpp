@@ -253,7 +253,6 @@ void Thermostat::errors(double h, int values, const Include &include) const
 void Thermostat::note_step(double h)
 {
   watch_cold(h);
-  watch_friction(h);
 }
 
 void Thermostat::watch_cold(double h)
@@ -340,7 +339,7 @@ static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
 
 static constexpr double TOLD_MOTION = 0.01;
 
-// a friction that is nearly too strong, relative to the limit
+// the friction in a step that changes, relative to the limit
 
 static constexpr double SAFE = 0.8;
 
@@ -430,7 +429,6 @@ void Thermostat::begin_run(bool /*anew*/, double h)
   note_friction();
   refuse_nothing();
   tell_freedoms();
-  refuse_friction(h);
   // a single pass uses only the predicted friction
   const double fewest = (single_pass ? 2.0 : 1.0) * FEWEST_STEPS;
   constexpr double ROUNDING = 1.0e-12;    // tolerance limits a step to exactly this many
@@ -488,49 +486,18 @@ void Thermostat::refuse_nothing() const
 }
 
 /* ----------------------------------------------------------------------
-   test for a friction that is too strong for the bodies
+   the friction, and what it permits
 ------------------------------------------------------------------------- */
-
-/// Ends the run if it is too strong.
-void Thermostat::refuse_friction(double h) const
-{
-  const double limit = most_friction / std::fabs(h);
-  for (int c = 0; c < (int) chains.size(); ++c) {
-    const ChainTarget target = target_of(c, 0.0, h);
-    if (!(twice_of(c) > 0.0) || !(target.freedoms > 0.0)) continue;
-    if (friction_bound(chains[c], target, twice_of(c)) < limit) continue;
-    const double found = friction_on_trial(chains[c], target, twice_of(c), h);
-    if (found < limit) continue;
-    const double advised =
-        std::max(FEWEST_STEPS * std::fabs(h),
-                 target.period * friction_bound(chains[c], target, twice_of(c)) / (SAFE * limit));
-    error->all(FLERR,
-               "Fix gear/quat temp: the {}temperature is {:.3g}, {:.3g} times its target, and with "
-               "a damping time of {:.3g} the thermostat would have a friction of {:.2g}/step, "
-               "where a step of {:.3g} permits {:.2g}; use a damping time of {:.2g} or longer",
-               !words.separate     ? ""
-                   : c == ROTATION ? "rotational "
-                                   : "translational ",
-               twice_of(c) / target.freedoms * force->mvv2e / force->boltz,
-               twice_of(c) / (target.freedoms * target.kt), words.damp, found * std::fabs(h), h,
-               limit * std::fabs(h), 1.05 * advised);
-  }
-}
 
 double Thermostat::friction_ahead(double h) const
 {
-  constexpr double WEAK = 0.1;    // times the step: weak enough for any method
-  const double size = std::fabs(h);
   double strongest = 0.0;
   for (int c = 0; c < (int) chains.size(); ++c) {
     const ChainTarget target = target_of(c, 0.0, h);
     if (!(twice_of(c) > 0.0) || !(target.freedoms > 0.0)) continue;
-    double bound = friction_bound(chains[c], target, twice_of(c));
-    if (size * bound > WEAK)
-      bound = std::min(bound, friction_on_trial(chains[c], target, twice_of(c), h));
-    strongest = std::max(strongest, size * bound);
+    strongest = std::max(strongest, friction_bound(chains[c], target, twice_of(c)));
   }
-  return strongest;
+  return strongest * std::fabs(h);
 }
 
 /// The longest step permitted by the friction and the damping time.
@@ -548,36 +515,14 @@ double Thermostat::strongest_friction() const
   return strongest;
 }
 
-double Thermostat::part_of_limit(double h) const
+std::vector<Rate> Thermostat::rates(double h, bool ahead) const
 {
-  return std::fabs(h) * strongest_friction() / most_friction;
-}
-
-Cause Thermostat::instability(double h) const
-{
-  const double part = part_of_limit(h);
-  if (part < 1.0) return {};
-  return {fmt::format("The thermostat became unstable first: its friction in a step of {:g} is "
-                      "{:.2g} times as strong as the method can follow",
-                      h, part),
-          "Begin nearer to the target temperature, or use a longer damping time"};
-}
-
-/// Warns once of a friction that is nearly too strong.
-void Thermostat::watch_friction(double h)
-{
-  const double part = part_of_limit(h);
-  if (warned_friction || part < SAFE) return;
-  warned_friction = true;
-  const double translation = element(T_TRANSLATION), rotation = element(T_ROTATION);
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat temp: in step {} the thermostat has a friction of {:.2g}/step, "
-                   "{:.0f} % of the limit of the method; the temperatures of translation and "
-                   "rotation are {:.4g} and {:.4g}, the target is {:.4g}; use a longer damping "
-                   "time than {:g}",
-                   update->ntimestep, std::fabs(h) * strongest_friction(), 100.0 * part,
-                   translation, rotation, element(TARGET), words.damp);
+  if (!acts()) return {};
+  const double found = ahead ? friction_ahead(h) : std::fabs(h) * strongest_friction();
+  const double period =
+      std::max(FEWEST_STEPS * std::fabs(h), words.damp * found / (0.5 * most_friction));
+  return {{"the friction of the thermostat is", found, most_friction,
+           fmt::format("use a damping time of {:g} or longer", rounded_up(period))}};
 }
 
 /* ----------------------------------------------------------------------

@@ -44,7 +44,7 @@ class Thermostat : public Coupling {
   Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const ThermostatWords &words,
              const Scheme &scheme);
 
-  /// Ends the run if there is nothing to thermostat, or if the friction would be too strong.
+  /// Ends the run if there is nothing to thermostat.
   void begin_run(bool anew, double h) override;
   void set_scheme(const Scheme &scheme) override;
   double friction_ahead(double h) const override;
@@ -60,8 +60,7 @@ class Thermostat : public Coupling {
                        friction_of(ibody));
   }
   void correct(const Integrator &integrator, int passes) override;
-  /// Warns once of bodies that a thermostat cannot warm, and of a friction that is nearly too
-  /// strong.
+  /// Warns once of bodies that a thermostat cannot warm.
   void note_step(double h) override;
   void follow_changes(double h) override;
   void follow_velocities(double h) override;
@@ -69,7 +68,7 @@ class Thermostat : public Coupling {
   void put_back() override { chains = kept; }
   double longest_step() const override;
   void errors(double h, int values, const Include &include) const override;
-  Cause instability(double h) const override;
+  std::vector<Rate> rates(double h, bool ahead) const override;
 
   void begin_start(const StartNodes &nodes) override;
   void foretell(const StartNodes &nodes) override;
@@ -121,7 +120,6 @@ class Thermostat : public Coupling {
   double unit = 1.0;                  ///< of the sums, see scale()
   double cold[2] = {};                ///< time that the parts have been cold
   bool warned[2] = {};                ///< of that
-  bool warned_friction = false;
   TotalMomentum total;
 
   std::vector<Collocation::Scalar> twice_at_nodes;    ///< 2K of the chains
@@ -140,7 +138,6 @@ class Thermostat : public Coupling {
   Setting setting() const;
   void count_freedoms();
   void refuse_masks() const;
-  void refuse_friction(double h) const;
   double strongest_friction() const;
   void settle_fresh(double h);
   void refuse_nothing() const;
@@ -155,8 +152,6 @@ class Thermostat : public Coupling {
   /// 2K around the start, in units of the node spacing.
   static ChainDrive drive_of(const Collocation &collocation, const Collocation::Scalar &twice);
   void watch_cold(double h);
-  void watch_friction(double h);
-  double part_of_limit(double h) const;
   void tell_freedoms();
   /// Rank 0 prints the message if it differs from the last one.
   void tell_once(std::string &last, const std::string &message) const;

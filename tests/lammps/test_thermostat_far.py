@@ -134,41 +134,27 @@ def test_an_overlap_under_tolerance(lmp_tree, gas):
 
 # --- too strong ---------------------------------------------------------------------------------
 
-ADVICE = re.compile(r"use a damping time of (\S+) or longer")
+ADVICE = re.compile(
+    r"the friction of the thermostat is \S+ in a step, and the method follows \S+; use a damping time of (\S+) or longer"
+)
 
 
-def test_a_friction_that_is_too_strong_is_refused_and_the_advice_holds(lmp_tree, gas):
+def test_a_friction_that_is_too_strong_is_warned_of_and_the_advice_holds(lmp_tree, gas):
     words = "values 7 temp 0.002 0.002 {} tchain 1 thermostat {}"
-    for kind, whose in (("total", "the temperature"), ("separate", "the translational temperature")):
-        log = lmp_tree.refuse(gas(words.format(0.1, kind)), whose).words
-        damp = float(ADVICE.search(log)[1])
+    for kind in ("total", "separate"):
+        damp = float(ADVICE.findall(lmp_tree.run(gas(words.format(0.1, kind))).words)[0])
         assert 0.2 < damp < 4.0
         result = lmp_tree.succeed(gas(words.format(damp, kind)))
         assert change(result.thermo[0]) < 0.02
-        assert "permits" not in result.words
-        lmp_tree.refuse(gas(words.format(0.5 * damp, kind)), whose)
+        assert not ADVICE.search(result.words)
 
 
-def test_a_friction_that_becomes_strong_is_warned_of(lmp_tree, gas):
-    """Before the run this is unknown, because the heat comes from overlaps."""
-    words, warning = "values 7 temp 1.0 1.0 {} tchain 1", "of the limit of the method"
-    for damp, count in ((0.03, 1), (0.3, 0)):
-        deck = overlapping(gas(words.format(damp), soft=300.0, dt=0.002, run="run 200"))
-        for ranks in (1, 2):  # the warning has temperatures, which are sums over all ranks
-            result = lmp_tree.succeed(deck, ranks=ranks)
-            assert result.words.count(warning) == count
-
-
-def test_an_unstable_thermostat_is_named_before_the_bodies(lmp_tree, gas):
+def test_an_unstable_thermostat_is_named(lmp_tree, gas):
     """With a damping time of two steps and kinetic energy from overlaps; the remedy helps."""
     words = "values 7 temp 1.0 1.0 {} tchain 1"
-    for damp in (0.004, 0.2):
-        deck = overlapping(gas(words.format(damp), soft=300.0, dt=0.002, run="run 200"))
-        if damp > 0.1:
-            lmp_tree.succeed(deck)
-            continue
-        said = lmp_tree.refuse(deck, "The thermostat became unstable first").words
-        assert "Begin nearer to the target temperature, or use a longer damping time" in said
+    deck = overlapping(gas(words.format("{}"), soft=300.0, dt=0.002, run="run 200"))
+    damp = ADVICE.search(lmp_tree.refuse(deck.format(0.004), "blow-up").words.split("blow-up")[1])[1]
+    lmp_tree.succeed(deck.format(max(float(damp), 0.2)))
 
 
 # --- a covering sample --------------------------------------------------------------------------
@@ -244,8 +230,8 @@ def test_no_chain_ends_a_run(lmp_tree, number):
     nx, ny, nz = BOXES[row["molecules"]]
     deck = NITROGEN.format(words=words, nx=nx, ny=ny, nz=nz, dt=4.0, steps=300)
     result = lmp_tree.run(deck, timeout=1800)
-    if row["damp"] < 100 and "permits" in result.words:
-        print(f"{number} {words} molecules {row['molecules']}: refused")
+    if row["damp"] < 100 and ADVICE.search(result.words):
+        print(f"{number} {words} molecules {row['molecules']}: too strong")
         return
     assert result.returncode == 0, result.output
     (table,) = result.thermo

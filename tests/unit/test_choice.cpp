@@ -69,26 +69,6 @@ TEST(FastEdge, IsTheFrequencyOfAVibrationAtAnyPhaseAndSpacing)
       }
 }
 
-TEST(FastEdge, FollowsFromTheAccelerationsOfFourSteps)
-{
-  for (const double phase : {0.0, 0.1, 0.8, 1.57, 1.5707963267948966})
-    for (const double h : {0.04, -0.1, 0.3}) {
-      MotionSums::Derivative rows[MotionSums::LEVELS];
-      for (int n = 0; n < MotionSums::LEVELS; ++n) {
-        const BodyState s = swinging(phase + n * OMEGA * h);
-        const TaylorSeries series = local_series(BALL, s, springs(s, 1.0), h);
-        rows[n] = MotionSums::derivative(series, 2);
-      }
-      MotionSums sums;
-      sums.add(BALL, swinging(phase), rows, h);
-      const double edge = MotionSums::true_edge(sums.fast_edge(h)), exact = std::fabs(h) * OMEGA;
-      EXPECT_NEAR(edge, exact, 1e-6 * exact) << phase;
-      EXPECT_GT(std::fabs(edge / (1.01 * exact) - 1.0), 0.005);
-      EXPECT_TRUE(sums.knows_derivatives(h));
-    }
-  EXPECT_NEAR(MotionSums::true_edge(5.0), 3.14159265358979, 1e-12);    // forces without a pattern
-}
-
 TEST(FastEdge, IsNoneOfAFreeRotation)
 {
   BodyState s = {};
@@ -195,43 +175,17 @@ TEST(Choice, FrictionOfAThermostatIsFollowed)
     }
 }
 
-TEST(Choice, LongStepsAreTold)
+TEST(Choice, AVibrationIsFollowedUpToTwoThirdsOfTheFastest)
 {
-  const auto told = [](double edge, bool exact, Noise noise, Formulation formulation) {
-    ChoiceOfValues long_step = scene(edge);
-    long_step.exact = exact;
-    long_step.noise = noise;
-    return long_step.too_long(automatic(formulation));
-  };
-  EXPECT_FALSE(told(0.59, true, Noise::NONE, MOMENTUM));
-  EXPECT_TRUE(told(0.61, true, Noise::NONE, MOMENTUM));
-  EXPECT_FALSE(told(0.61, false, Noise::NONE, MOMENTUM));
-  EXPECT_FALSE(told(0.61, true, Noise::RANDOM, MOMENTUM));
-  EXPECT_FALSE(told(0.22, true, Noise::NONE, FIRST));
-  EXPECT_TRUE(told(0.24, true, Noise::NONE, FIRST));
-  ChoiceOfValues both = scene(1.0);
-  both.exact = true;
-  EXPECT_DOUBLE_EQ(both.advised_part(automatic(MOMENTUM)), 0.5);
-  EXPECT_NEAR(both.advised_part(automatic(FIRST)), 5.0 / 6.0 * 2.0 / 3.0 * 0.34, 1e-12);
-}
-
-TEST(Choice, AStatedNumberHasALimitOfItsOwn)
-{
-  // two thirds of the fastest stable vibration
   const auto longest = [](int values, bool is_tuned) {
     Scheme scheme = automatic(is_tuned ? MOMENTUM : SECOND);
     scheme.rows = values;
-    ChoiceOfValues stated = scene(0.01);
-    stated.exact = true;
-    stated.automatic = false;
-    while (!stated.too_long(scheme)) stated.edge += 0.01;
-    EXPECT_NEAR(stated.advised_part(scheme), 5.0 / 6.0, 0.04);
-    return stated.edge;
+    return ChoiceOfValues::longest_edge(scheme);
   };
-  EXPECT_NEAR(longest(9, true), 0.40, 0.011);
-  EXPECT_NEAR(longest(7, true), 0.47, 0.011);
-  EXPECT_NEAR(longest(5, true), 0.63, 0.011);
-  EXPECT_NEAR(longest(8, false), 0.31, 0.011);
+  EXPECT_NEAR(longest(9, true), 0.40, 0.001);
+  EXPECT_NEAR(longest(7, true), 0.47, 0.004);
+  EXPECT_NEAR(longest(5, true), 0.64, 0.001);
+  EXPECT_NEAR(longest(8, false), 0.31, 0.004);
 }
 
 TEST(FastEdge, IsNoneOfForcesThatCancelUpToRounding)
@@ -240,9 +194,11 @@ TEST(FastEdge, IsNoneOfForcesThatCancelUpToRounding)
   s.q[3] = 1.0;
   s.velocity[0] = 1.0;
   for (const double size : {1e-18, 1e-6}) {
-    const MotionSums::Derivative rows[] = {{size}, {-size}, {size}, {size}};
+    TaylorSeries series = {};
+    series.terms = 9;
+    series.c[2][0] = series.c[4][0] = size;
     MotionSums sums;
-    sums.add(BALL, s, rows, 0.01);
+    sums.add(BALL, s, series, 0.01);
     EXPECT_EQ(sums.knows_derivatives(0.01), size > 1e-12) << size;
     EXPECT_EQ(sums.fast_edge(0.01) > 0.0, size > 1e-12) << size;
   }

@@ -53,23 +53,14 @@ TEST(FrictionLimit, IsWhereAFreeBodyBecomesUnstable)
   EXPECT_GT(found, 15);
 }
 
-TEST(Friction, ABoundAndATrialHoldForAGas)
+TEST(Friction, ABoundHoldsForAGas)
 {
-  // a chain of one variable has a first integral; longer chains and other starts stay below it
+  // a chain of one variable has a first integral
   const double g = 3000.0, kt = 0.7;
   for (const double part : {0.01, 0.3, 4.0, 40.0})
-    for (const double damp : {12.0, 150.0})
-      for (const int length : {1, 2, 3}) {
-        const ChainTarget target = {kt, 0.0, g, damp};
-        const Chain chain(length);
-        const double twice = part * g * kt;
-        const double bound = friction_bound(chain, target, twice);
-        const double trial = friction_on_trial(chain, target, twice, 1.0);
-        const double first_integral = std::sqrt(part - 1.0 - std::log(part)) / damp;
-        EXPECT_NEAR(bound, first_integral, 1.0e-12);
-        EXPECT_LT(trial, 1.02 * bound) << part << " " << damp << " " << length;
-        if (length == 1 && damp > 100.0 && part > 1.0) {
-          EXPECT_NEAR(trial, bound, 0.005 * bound) << part;
-        }
-      }
+    for (const double damp : {12.0, 150.0}) {
+      const ChainTarget target = {kt, 0.0, g, damp};
+      const double bound = friction_bound(Chain(1), target, part * g * kt);
+      EXPECT_NEAR(bound, std::sqrt(part - 1.0 - std::log(part)) / damp, 1.0e-12);
+    }
 }

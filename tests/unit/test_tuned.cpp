@@ -270,20 +270,14 @@ double measured_gain(const Scheme &scheme)
 
 }    // namespace
 
-TEST(Noise, OfRandomForcesIsTheGain)
-{
-  for (const Scheme &scheme : {scheme_of(FIRST, 4), scheme_of(FIRST, 6), scheme_of(SECOND, 6),
-                               scheme_of(SECOND, 8), scheme_of(MOMENTUM, SECOND_MOST)})
-    EXPECT_NEAR(measured_gain(scheme) / noise_gain(scheme), 1.0, 0.03) << scheme;
-}
-
 TEST(Noise, GrowsWithTheNumberOfGearsValues)
 {
   for (const Formulation formulation : {FIRST, SECOND}) {
     double last = 0.0;
     for (const Scheme &scheme : schemes_of(formulation)) {
-      EXPECT_GT(noise_gain(scheme), 1.2 * last) << scheme;
-      last = noise_gain(scheme);
+      const double gain = measured_gain(scheme);
+      EXPECT_GT(gain, 1.2 * last) << scheme;
+      last = gain;
     }
   }
 }
@@ -313,7 +307,7 @@ TEST(Noise, RandomForcesHaveVelocityVerlet)
     ASSERT_NEAR(motion.state().center[1], x, 1e-11);
     ASSERT_NEAR(motion.state().velocity[1], v, 1e-11);
   }
-  EXPECT_DOUBLE_EQ(noise_gain(scheme), 0.5);
+  EXPECT_NEAR(measured_gain(scheme), 0.5, 0.02);
 }
 
 TEST(Noise, SuitsFewValues)

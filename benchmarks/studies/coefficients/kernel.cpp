@@ -149,9 +149,25 @@ void cage(const Corrector *corrector, double h, int seed, double time, double *c
   }
 }
 
+/// A force in one step only changes the velocity in the following steps by d_1, d_2, ..., whose sum
+/// is 1 in units of h F/m.  Returns sum d_k^2 of the center of mass: the mean square change of a
+/// velocity in a step, relative to the correct one, under forces that are independent in all steps.
 double noise(const Corrector *corrector)
 {
-  return noise_gain(scheme_for(*corrector), coefficients_of(*corrector));
+  constexpr int STEPS = 1000;    // roots of 0.99 have decayed
+  const Scheme scheme = scheme_for(*corrector);
+  const CorrectorCoefficients c = coefficients_of(*corrector);
+  const int n = scheme.values(), order = scheme.first() ? 1 : 2;
+  double rows[MAX_VALUES] = {}, gain = 0.0;
+  for (int step = 0; step < STEPS; ++step) {
+    const double before = rows[order - 1];
+    Nordsieck<1>::predict(rows, n);
+    const double residual = (step == 0 ? 1.0 / order : 0.0) - rows[order];
+    Nordsieck<1>::correct<1>(rows, n, c.c.data(), 0, &residual);
+    const double change = rows[order - 1] - before;
+    gain += change * change;
+  }
+  return gain;
 }
 
 /// The tail of the tuned set, and its c_0 (NaN if it is solved for).  Returns the length of the tail, 0

@@ -23,7 +23,7 @@ from . import peers
 
 STEPS, QUICK_STEPS, SAMPLES = 10_000_000, 20_000, 2000
 #: messages of LAMMPS and of the fix for coordinates and energies that are no longer finite
-NOT_FINITE = ("Non-numeric", "Fix gear/quat: blow-up", "values can follow")
+NOT_FINITE = ("Non-numeric", "Fix gear/quat: blow-up")
 #: a slope below this number of standard errors, which are estimates themselves, is not a drift
 SIGNIFICANT = 4.0
 #: an error above this fraction of the initial kinetic energy spoils a run
