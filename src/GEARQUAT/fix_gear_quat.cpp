@@ -272,7 +272,7 @@ void FixGearQuat::end_step(double **f, double **torque)
   sites.advance_densities(update->dt);
   driven_box.end_step();
   if (box_change != NO_BOX_CHANGE) ownership.note_box();
-  if (step.shows_local_data()) show_bodies();
+  if (step.has_readers()) show_bodies();
   if (step.coupling && step.coupling->is_tilted()) next_reneighbor = update->ntimestep + 1;
   compare_calls(world);
 }

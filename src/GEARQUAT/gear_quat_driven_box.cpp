@@ -42,7 +42,7 @@ void DrivenBox::init()
   for (const auto *other : modify->get_fix_list()) {
     if (other == fix || !changes_box(other)) continue;
     driven = true;
-    if (!known(FixFact::CARRIES_BODIES, other))
+    if (!known(Fact::CARRIES_BODIES, other))
       error->all(FLERR,
                  "Fix gear/quat: fix {} ({}) changes the box without informing other fixes of "
                  "the remap, so bodies cannot follow; use fix deform, fix press/berendsen, or "

@@ -45,48 +45,56 @@ void OtherFixes::init()
   taken.clear();
   watched.clear();
   warned_change = false;
-  tell_noise();
+  warn_of_noise();
   for (auto *other : modify->get_fix_list()) {
-    if (other == fix) continue;
-    refuse_thermostat(other);
-    const ActOnAtoms *row = act_on_atoms(other);
+    const Style *row = known(Fact::ON_ATOMS, other);
+    const bool heats = args.thermostat.damp > 0.0 && known(Fact::THERMOSTAT, other);
+    if (other == fix || (!row && !heats)) continue;
+    const tagint atom = shared_atom(lmp, ownership, other);
+    if (heats && atom)
+      error->all(
+          FLERR,
+          "Fix gear/quat temp is a thermostat of the bodies, and fix {} ({}) is another one; "
+          "leave out one of the two, or give the other one a group without atoms of bodies",
+          other->id, other->style);
     if (!row) continue;
-    const tagint atom = shared_atom(other);
-    const bool exchanges = row->act == ActOnAtoms::EXCHANGE;
-    if (exchanges && !args.mol.empty()) {
+    if (row->is(Fact::TEMPERATURE | Fact::MOMENTUM)) {
+      taken.push_back(other);
+      if (atom && args.isokinetic != Isokinetic::NONE && row->is(Fact::TEMPERATURE))
+        error->all(FLERR,
+                   "Fix gear/quat isokinetic keeps the kinetic energy, which fix {} ({}) changes; "
+                   "leave out one of the two",
+                   other->id, other->style);
+    } else if (row->is(Fact::REFLECTION) || (row->is(Fact::EXCHANGE) && !args.mol.empty())) {
       watched.push_back(other);
-    } else if (exchanges || row->act == ActOnAtoms::SINGLE || row->act == ActOnAtoms::IMPULSE) {
-      refuse(other, *row, atom);
-    } else if (row->act == ActOnAtoms::REFLECTION) {
-      watched.push_back(other);
-      if (atom && comm->me == 0)
+      if (atom && row->is(Fact::REFLECTION) && comm->me == 0)
         error->warning(FLERR,
                        "Fix gear/quat: fix {} ({}) moves single atoms, and bodies do not follow; "
                        "the run will end with an error when it moves an atom of a body; {}",
                        other->id, other->style, row->instead);
     } else {
-      taken.push_back(other);
-      if (atom && args.isokinetic != Isokinetic::NONE && row->act == ActOnAtoms::TEMPERATURE)
-        error->all(FLERR,
-                   "Fix gear/quat isokinetic keeps the kinetic energy, which fix {} ({}) changes; "
-                   "leave out one of the two",
-                   other->id, other->style);
+      refuse(other, *row, atom);
     }
   }
 }
 
-/// Two thermostats on the same bodies would work against each other.
-void OtherFixes::refuse_thermostat(const Fix *other) const
+/// Ends the run if a fix changes single atoms of bodies.
+void OtherFixes::refuse(Fix *other, const Style &row, tagint atom) const
 {
-  if (args.thermostat.damp == 0.0) return;
-  if (known(FixFact::THERMOSTAT, other) && shared_atom(other))
-    error->all(FLERR,
-               "Fix gear/quat temp is a thermostat of the bodies, and fix {} ({}) is another one; "
-               "leave out one of the two, or give the other one a group without atoms of bodies",
-               other->id, other->style);
+  if (row.is(Fact::ANY))
+    error->all(FLERR, "Fix gear/quat cannot be used with fix {} ({}): bodies do not follow it; {}",
+               other->id, other->style, row.instead);
+  if (!atom || (row.is(Fact::CONSTRAINED) && other->dof(fix->igroup) == 0) ||
+      (row.is(Fact::AT_INTEGRATION) &&
+       !(modify->get_fix_mask(other) & FixConst::INITIAL_INTEGRATE)))
+    return;
+  error->all(FLERR,
+             "Fix gear/quat: fix {} ({}) changes single atoms of bodies, such as atom {}, and "
+             "bodies do not follow; {}",
+             other->id, other->style, atom, row.instead);
 }
 
-void OtherFixes::tell_noise()
+void OtherFixes::warn_of_noise()
 {
   if (warned_noise || args.control.eps > 0.0) return;
   const NoisyForces found = noise_of_forces(lmp, ownership);
@@ -104,16 +112,21 @@ void OtherFixes::tell_noise()
 
 NoisyForces GearQuat::noise_of_forces(LAMMPS *lmp, const Ownership &ownership)
 {
-  const std::string pair = fmt::format("pair style {}", lmp->force->pair_style);
-  if (known(PairFact::RANDOM, lmp->force)) return {Noise::RANDOM, pair};
+  const auto noise_of = [](const Style *row) {
+    return !row ? Noise::NONE : row->is(Fact::RANDOM) ? Noise::RANDOM : Noise::DISSIPATIVE;
+  };
+  constexpr unsigned NOISY = Fact::RANDOM | Fact::DISSIPATIVE;
   NoisyForces found;
-  if (known(PairFact::DISSIPATIVE, lmp->force)) found = {Noise::DISSIPATIVE, pair};
+  found.noise = known_pair(Fact::RANDOM, lmp->force) ? Noise::RANDOM
+                                                     : noise_of(known_pair(NOISY, lmp->force));
+  if (found.noise != Noise::NONE)
+    found.style = fmt::format("pair style {}", lmp->force->pair_style);
   for (const auto *fix : lmp->modify->get_fix_list()) {
-    const bool random = known(FixFact::RANDOM, fix);
-    if (!random && (found.noise != Noise::NONE || !known(FixFact::DISSIPATIVE, fix))) continue;
-    if (!known(FixFact::BESIDE_GROUP, fix) && !shared_atom(lmp, ownership, fix)) continue;
-    if (random) return {Noise::RANDOM, name_of(fix)};
-    found = {Noise::DISSIPATIVE, name_of(fix)};
+    if (found.noise == Noise::RANDOM) break;
+    const Noise noise = noise_of(known(NOISY, fix));
+    if (noise == Noise::NONE || noise == found.noise) continue;
+    if (known(Fact::BESIDE_GROUP, fix) || shared_atom(lmp, ownership, fix))
+      found = {noise, name_of(fix)};
   }
   return found;
 }
@@ -128,43 +141,13 @@ tagint GearQuat::shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix 
   return over_ranks(MPI_MAX, shared, lmp->world);
 }
 
-void OtherFixes::refuse(const Fix *other, const ActOnAtoms &row, tagint shared) const
-{
-  if (shared && row.act == ActOnAtoms::IMPULSE)
-    error->all(FLERR,
-               "Fix gear/quat: fix {} ({}) exchanges momentum in each step with bodies, such as "
-               "the body of atom {}, and no number of values can follow; {}",
-               other->id, other->style, shared, row.instead);
-  switch (row.on) {
-    case ActOnAtoms::GROUP:
-      if (shared) break;
-      return;
-    case ActOnAtoms::ANY:
-      error->all(FLERR,
-                 "Fix gear/quat cannot be used with fix {} ({}): bodies do not follow it; {}",
-                 other->id, other->style, row.instead);
-      return;
-    case ActOnAtoms::CONSTRAINED:
-      if (shared && const_cast<Fix *>(other)->dof(fix->igroup) > 0) break;
-      return;
-    case ActOnAtoms::AT_INTEGRATION:
-      if (shared && (modify->get_fix_mask(const_cast<Fix *>(other)) & FixConst::INITIAL_INTEGRATE))
-        break;
-      return;
-  }
-  error->all(FLERR,
-             "Fix gear/quat: fix {} ({}) changes single atoms of bodies, such as atom {}, and "
-             "bodies do not follow; {}",
-             other->id, other->style, shared, row.instead);
-}
-
 /// The rigid fixes require keyword disable, and apply gravity to bodies themselves.
 void OtherFixes::check_gravity()
 {
   if (!utils::strmatch(update->integrate_style, "^verlet")) return;
   const size_t n = 3 * (size_t) atom->nlocal;
   for (auto *other : modify->get_fix_by_style("^gravity")) {
-    if (!shared_atom(other)) continue;
+    if (!shared_atom(lmp, ownership, other)) continue;
     std::vector<double> forces;
     if (n) forces.assign(atom->f[0], atom->f[0] + n);
     if (n) std::fill_n(atom->f[0], n, 0.0);
@@ -176,25 +159,22 @@ void OtherFixes::check_gravity()
       if (dot3(f, f) == 0.0) continue;
       here[0] = 1;
       if (site.body >= bodies.nmoved()) continue;
-      const double factor =
-          force->ftm2v * bodies.rigid_of(site.body).mass / ownership.mass_of(site.atom);
-      double off[3];
-      for (int k = 0; k < 3; ++k) off[k] = factor * f[k] - bodies.load_of(site.body).force[k];
-      if (dot3(off, off) > RIGID * RIGID * factor * factor * dot3(f, f)) here[1] = 1;
+      double weight[3], off[3];
+      for (int k = 0; k < 3; ++k) {
+        weight[k] =
+            f[k] * force->ftm2v * bodies.rigid_of(site.body).mass / ownership.mass_of(site.atom);
+        off[k] = weight[k] - bodies.load_of(site.body).force[k];
+      }
+      if (length(off) > RIGID * length(weight)) here[1] = 1;
     }
     if (n) std::copy(forces.begin(), forces.end(), atom->f[0]);
     const auto any = over_ranks(MPI_MAX, here, world);
-    if (comm->me != 0) continue;
-    if (!any[0])
-      error->warning(FLERR,
-                     "Fix gear/quat: fix {} (gravity) exerts no force on bodies; if it has the "
-                     "keyword disable, which fix rigid/small requires, leave that out",
-                     other->id);
-    else if (any[1])
-      error->warning(FLERR,
-                     "Fix gear/quat: fix {} (gravity) acts on the masses of atoms, which differ "
-                     "from the masses of their bodies; use fix addforce instead",
-                     other->id);
+    if (comm->me != 0 || (any[0] && !any[1])) continue;
+    error->warning(FLERR, "Fix gear/quat: fix {} (gravity) {}", other->id,
+                   any[0] ? "acts on the masses of atoms, which differ from the masses of their "
+                            "bodies; use fix addforce instead"
+                          : "exerts no force on bodies; if it has the keyword disable, which fix "
+                            "rigid/small requires, leave that out");
   }
 }
 
@@ -274,9 +254,9 @@ void OtherFixes::check_velocities(bool all)
   const Site *const first = sites.begin() + (all ? 0 : sample);
   for (const Site *site = first; site < sites.end() && !warned_change; ++site) {
     if (all && !sites.is_there(*site))
-      tell(*site, "place");
+      warn(*site, "place");
     else if (!sites.is_as_fast(*site))
-      tell(*site, "velocity");
+      warn(*site, "velocity");
     if (!all) break;
   }
 }
@@ -288,17 +268,16 @@ void OtherFixes::check_places()
       if (!sites.is_there(site))
         error->one(FLERR,
                    "Fix gear/quat: {} has moved atom {} of body {} in step {}, and bodies do not "
-                   "follow; " +
-                       std::string(act_on_atoms(watched.front())->instead),
+                   "follow; {}",
                    names(watched), atom->tag[site.atom], bodies.body_at(site.body).id,
-                   update->ntimestep);
+                   update->ntimestep, known(Fact::ON_ATOMS, watched.front())->instead);
     return;
   }
   if (warned_change || sample >= sites.number()) return;
-  if (!sites.is_there(sites[sample])) tell(sites[sample], "place");
+  if (!sites.is_there(sites[sample])) warn(sites[sample], "place");
 }
 
-void OtherFixes::tell(const Site &site, const char *what)
+void OtherFixes::warn(const Site &site, const char *what)
 {
   warned_change = true;
   std::vector<const Fix *> others;

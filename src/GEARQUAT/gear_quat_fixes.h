@@ -26,7 +26,7 @@ class Fix;
 namespace LAMMPS_NS::GearQuat {
 
 struct Arguments;
-struct ActOnAtoms;
+struct Style;
 
 /// The largest ID of an atom of a body in the group of that fix, 0 for none.  Collective.
 tagint shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix *other);
@@ -83,15 +83,10 @@ class OtherFixes : protected Pointers {
   bool warned_noise = false;           ///< warned of random forces and the like
   bool warned_change = false;          ///< warned of an unknown change in this run
 
-  void tell_noise();
-  tagint shared_atom(const Fix *other) const
-  {
-    return GearQuat::shared_atom(lmp, ownership, other);
-  }
-  void refuse_thermostat(const Fix *other) const;
-  void refuse(const Fix *other, const ActOnAtoms &row, tagint atom) const;
+  void warn_of_noise();
+  void refuse(Fix *other, const Style &row, tagint atom) const;
   bool gather_impulses();
-  void tell(const Site &site, const char *what);
+  void warn(const Site &site, const char *what);
   std::string names(const std::vector<const Fix *> &fixes) const;
 };
 

@@ -55,11 +55,11 @@ Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(l
 void Forces::look_at_styles()
 {
   if (lmp->kokkos) why = "the KOKKOS package is on";
-  if (const char *reason = unrepeatable_run_style(update->integrate_style))
-    why = fmt::format("run style {} {}", update->integrate_style, reason);
-  if (const char *style = unrepeatable_bond(force))
-    why = fmt::format("bonds of style {} may break or change for good", style);
-  if (known(PairFact::UNREPEATABLE, force))
+  if (const Style *style = known_run_style(Fact::UNREPEATABLE, update->integrate_style))
+    why = fmt::format("run style {} {}", update->integrate_style, style->reason);
+  if (const Style *style = known_bond(Fact::UNREPEATABLE, force))
+    why = fmt::format("bonds of style {} may break or change for good", style->pattern);
+  if (known_pair(Fact::UNREPEATABLE, force))
     why = fmt::format("pair style {} draws random numbers or has a memory", force->pair_style);
 }
 
@@ -75,9 +75,9 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
       why = name_of(fix) + " moves atoms";
     else if (mask & within_step)
       why = name_of(fix) + " acts within the step";
-    else if (known(FixFact::THREADS, fix))
+    else if (known(Fact::THREADS, fix))
       pre_force.push_back(fix);
-    else if (known(FixFact::REPEATABLE, fix))
+    else if (known(Fact::REPEATABLE, fix))
       post_force.push_back(fix);
     else if (mask & during_force)
       why = name_of(fix) + " acts on forces in a way that cannot be followed";
@@ -88,10 +88,10 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
 /// The name of a style whose force may depend on a variable, empty for none.
 std::string Forces::reader_of_variables() const
 {
-  if (known(PairFact::READS_VARIABLES, force))
+  if (known_pair(Fact::READS_VARIABLES, force))
     return fmt::format("pair style {}", force->pair_style);
   for (const auto *fix : post_force)
-    if (!known(FixFact::WITHOUT_VARIABLES, fix)) return name_of(fix);
+    if (!known(Fact::WITHOUT_VARIABLES, fix)) return name_of(fix);
   return "";
 }
 

@@ -40,12 +40,9 @@ std::string TotalMomentum::find_outside(bool bodies_come) const
   const bigint others = atom->natoms - over_ranks(MPI_SUM, here, world);
   if (others > 0) return fmt::format("{} atoms are in no body of this fix", others);
   if (const Fix *other = fix_with_forces(lmp, fix)) return name_of(other) + " may exert forces";
-  for (const auto *other : modify->get_fix_list()) {
-    const ActOnAtoms *row = act_on_atoms(other);
-    if (!bodies_come && row && row->act == ActOnAtoms::EXCHANGE)
-      return name_of(other) + " may insert atoms";
-  }
-  if (known(PairFact::BACKGROUND, lmp->force))
+  for (const auto *other : modify->get_fix_list())
+    if (!bodies_come && known(Fact::EXCHANGE, other)) return name_of(other) + " may insert atoms";
+  if (known_pair(Fact::BACKGROUND, lmp->force))
     return std::string("pair style ") + lmp->force->pair_style + " exerts forces from outside";
   return "";
 }

@@ -76,11 +76,6 @@ class Ownership : protected Pointers {
   void note_outside_atom(int change) { outside_atoms += change; }
   /// label: of all owned atoms, followed by their ghosts, which receive the same.  Collective.
   void spread_labels(std::vector<double> &label) { send(label.data(), 1, true); }
-  /// Ghost atoms receive the IDs of their bodies if all bodies are large.  Collective.
-  void tell_ids_to_ghosts()
-  {
-    if (number_of_large() == bodies.number()) send(nullptr, 0, true);
-  }
 
   /// Positions and orientations of extended atoms in their bodies.
   Extended &extended() { return records; }

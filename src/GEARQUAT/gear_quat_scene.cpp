@@ -57,7 +57,8 @@ static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Fleet &f
   for (auto *other : lmp->modify->get_fix_list()) {
     if (other == fix || !other->time_integrate) continue;
     int dim;
-    const int *its_body = known(FixFact::BODY_OF_ATOMS, other)
+    const int *its_body =
+        known(Fact::BODY_OF_ATOMS, other) && !utils::strmatch(other->style, "/small")
         ? static_cast<const int *>(other->extract("body", dim))
         : nullptr;
     const Atom *atom = lmp->atom;
@@ -85,7 +86,7 @@ static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
     if (!first && other->rigid_flag) first = other;
   if (first == fix || lmp->comm->me != 0) return;
   for (const auto *other : lmp->modify->get_fix_list())
-    if (known(FixFact::FIRST_RIGID, other))
+    if (known(Fact::FIRST_RIGID, other))
       lmp->error->warning(FLERR,
                           "Fix gear/quat: fix {} ({}) uses the bodies of fix {} only and damps "
                           "contacts of the bodies of fix {} with the masses of atoms; use one fix "
@@ -142,24 +143,14 @@ bool GearQuat::makes_forces(LAMMPS *lmp, const Fix *owner)
   return false;
 }
 
-Readers GearQuat::readers_at_end(LAMMPS *lmp, const Fix *owner)
+std::vector<int> GearQuat::readers_at_end(LAMMPS *lmp, const Fix *owner)
 {
-  const auto add = [](std::vector<int> &periods, int period) {
-    if (!std::count(periods.begin(), periods.end(), period)) periods.push_back(period);
-  };
-  const auto &computes = lmp->modify->get_compute_list();
-  const bool reduced = std::any_of(computes.begin(), computes.end(), [](const Compute *compute) {
-    return known(ComputeFact::READS_LOCAL_DATA, compute) != nullptr;
-  });
-  Readers readers;
-  for (auto *other : lmp->modify->get_fix_list()) {
-    if (other == owner || other->nevery <= 0 ||
-        !(lmp->modify->get_fix_mask(other) & FixConst::END_OF_STEP))
-      continue;
-    add(readers.of_atoms, other->nevery);
-    if (reduced || !known(FixFact::NO_LOCAL_DATA, other)) add(readers.of_local_data, other->nevery);
-  }
-  return readers;
+  std::vector<int> periods;
+  for (auto *other : lmp->modify->get_fix_list())
+    if (other != owner && other->nevery > 0 && (lmp->modify->get_fix_mask(other) & END_OF_STEP) &&
+        !std::count(periods.begin(), periods.end(), other->nevery))
+      periods.push_back(other->nevery);
+  return periods;
 }
 
 /* ----------------------------------------------------------------------

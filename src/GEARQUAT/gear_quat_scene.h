@@ -56,11 +56,7 @@ bool makes_forces(LAMMPS *lmp, const Fix *owner);
 
 /// The intervals in steps at which other fixes may read data at the end of a step; each number
 /// once.
-struct Readers {
-  std::vector<int> of_atoms;
-  std::vector<int> of_local_data;    ///< of the calling fix; a subset of the above
-};
-Readers readers_at_end(LAMMPS *lmp, const Fix *owner);
+std::vector<int> readers_at_end(LAMMPS *lmp, const Fix *owner);
 
 }    // namespace LAMMPS_NS::GearQuat
 

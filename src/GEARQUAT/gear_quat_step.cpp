@@ -681,7 +681,7 @@ void Step::end(double **f, double **torque)
   accept(f);
   if (bodies.have_copies()) ownership.spread_moved();
   sites.place(true);
-  if (is_due(readers.of_atoms)) comm->forward_comm();    // ghosts are where forces were evaluated
+  if (has_readers()) comm->forward_comm();    // ghosts are where forces were evaluated
 }
 
 void Step::gather(double **f, double **torque)
@@ -856,11 +856,10 @@ void Step::examine_all(double **f)
     for (const int ibody : *list) examine(ibody, f);
 }
 
-/// True if output is due in this step, or if the step is a multiple of one of the periods.
-bool Step::is_due(const std::vector<int> &periods) const
+bool Step::has_readers() const
 {
   const bigint now = update->ntimestep;
-  return output->next == now || std::any_of(periods.begin(), periods.end(), [now](int period) {
+  return output->next == now || std::any_of(readers.begin(), readers.end(), [now](int period) {
            return now % period == 0;
          });
 }

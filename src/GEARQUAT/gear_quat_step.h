@@ -115,8 +115,8 @@ class Step : protected Pointers {
   void choose_next();
   /// Loads of bodies from the forces on atoms that LAMMPS has just evaluated.
   void gather(double **f, double **torque);
-  /// True if something may read local data at the end of this step.
-  bool shows_local_data() const { return is_due(readers.of_local_data); }
+  /// True if an output or another fix may read data at the end of this step.
+  bool has_readers() const;
 
   // elements of the fix's vector after the elements of Sums
 
@@ -150,8 +150,8 @@ class Step : protected Pointers {
   TimeStep time_step;
   std::unique_ptr<Tolerance> tolerance;    ///< null: the step is LAMMPS' own
   std::unique_ptr<Coupling> coupling;      ///< null: bodies move by their own loads
-  Readers readers;                         ///< other fixes that read at the end of a step
-  bool velocities_read = true;             ///< by other styles, between begin() and end()
+  std::vector<int> readers;       ///< periods of other fixes that read data at the end of a step
+  bool velocities_read = true;    ///< by other styles, between begin() and end()
 
  private:
   const Fleet &fleet;
@@ -236,7 +236,6 @@ class Step : protected Pointers {
   void examine(int ibody, double **f);
   void examine_all(double **f);
   void find_limits(double h);
-  bool is_due(const std::vector<int> &periods) const;
 
   // the length of the step
 

@@ -97,7 +97,7 @@ void Tolerance::refuse_scene() const
                "Fix gear/quat tolerance cannot be used with run_style respa, whose levels "
                "have different steps");
   for (auto *other : modify->get_fix_list())
-    if (other != fix && known(FixFact::TIME_STEP, other))
+    if (other != fix && known(Fact::TIME_STEP, other))
       error->all(
           FLERR,
           "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
@@ -572,7 +572,7 @@ std::string Tolerance::reason_not_to_repeat() const
 {
   if (!forces->reason().empty()) return forces->reason();
   for (const auto *one : modify->get_compute_list())
-    if (known(ComputeFact::ADDS_UP, one))
+    if (adds_up(one))
       return fmt::format("compute {} ({}) adds up every evaluation of forces", one->id, one->style);
   return "";
 }
