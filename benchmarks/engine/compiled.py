@@ -10,7 +10,8 @@ from .decks import ROOT
 
 INCLUDED = (ROOT / "src" / "GEARQUAT", ROOT / "tests" / "unit")
 #: the sources of the kernel beside its headers
-KERNEL = tuple(ROOT / "src" / "GEARQUAT" / f"gear_quat_{name}.cpp" for name in ("coefficients", "startup", "turn"))
+_SOURCES = ("coefficients", "remembered_loads", "shapes", "startup", "turn")
+KERNEL = tuple(ROOT / "src" / "GEARQUAT" / f"gear_quat_{name}.cpp" for name in _SOURCES)
 
 
 @cache

@@ -20,7 +20,6 @@
 #ifndef GEAR_QUAT_MATH_H
 #define GEAR_QUAT_MATH_H
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -142,28 +141,6 @@ inline void to_space(const double a[9], const double *body, double *space)
   space[2] = a[2] * body[0] + a[5] * body[1] + a[8] * body[2];
 }
 
-/// The unit quaternion of a rotation matrix A (space -> body, row-major), without small divisors.
-inline void quaternion_from_matrix(const double a[9], double *q)
-{
-  const double four[4] = {1.0 + a[0] - a[4] - a[8], 1.0 - a[0] + a[4] - a[8],
-                          1.0 - a[0] - a[4] + a[8], 1.0 + a[0] + a[4] + a[8]};
-  int largest = 3;
-  for (int i = 0; i < 3; ++i)
-    if (four[i] > four[largest]) largest = i;
-  const double f = 0.5 * std::sqrt(four[largest]);
-  const double s = 0.25 / f;
-  const double sum01 = a[1] + a[3], sum02 = a[2] + a[6], sum12 = a[5] + a[7];
-  const double dif12 = a[5] - a[7], dif20 = a[6] - a[2], dif01 = a[1] - a[3];
-  const double candidates[4][4] = {{f, s * sum01, s * sum02, s * dif12},
-                                   {s * sum01, f, s * sum12, s * dif20},
-                                   {s * sum02, s * sum12, f, s * dif01},
-                                   {s * dif12, s * dif20, s * dif01, f}};
-  double norm = 0.0;
-  for (int i = 0; i < 4; ++i) norm += candidates[largest][i] * candidates[largest][i];
-  norm = 1.0 / std::sqrt(norm);
-  for (int i = 0; i < 4; ++i) q[i] = norm * candidates[largest][i];
-}
-
 /// Project q onto |q| = 1, Eq. 3.
 inline void project_norm(double *q)
 {
@@ -192,9 +169,6 @@ inline double angle_about_z(const double *q)
 }
 
 /* ---------------------------------------------------------------------- */
-
-/// A moment of inertia below this fraction of the largest counts as zero, as in fix rigid.
-constexpr double LINEAR_FRACTION = 1.0e-7;
 
 /// Mass and principal moments.  A zero moment has no rotational degree of freedom.
 struct RigidBody {
@@ -341,70 +315,6 @@ inline double rotational_energy(const RigidBody &body, const double *omega_body)
   double twice = 0.0;
   for (int i = 0; i < 3; ++i) twice += body.inertia[i] * omega_body[i] * omega_body[i];
   return 0.5 * twice;
-}
-
-/// Principal moments and axes of a symmetric tensor (row-major) by cyclic Jacobi rotations.
-/// After the call the rows of `a` are the axes, a right-handed rotation matrix space -> body.  Axes
-/// are not sorted: an axis that is already principal does not change at all.
-inline void principal_axes(const double tensor[9], double moments[3], double a[9])
-{
-  double m[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (int i = 0; i < 9; ++i) m[i / 3][i % 3] = tensor[i];
-
-  for (int sweep = 0; sweep < 50; ++sweep) {
-    const double off = std::fabs(m[0][1]) + std::fabs(m[0][2]) + std::fabs(m[1][2]);
-    if (off == 0.0) break;
-    for (int p = 0; p < 2; ++p)
-      for (int r = p + 1; r < 3; ++r) {
-        if (m[p][r] == 0.0) continue;
-        const double ratio = (m[r][r] - m[p][p]) / (2.0 * m[p][r]);
-        const double t = std::copysign(1.0, ratio) / (std::fabs(ratio) + std::hypot(ratio, 1.0));
-        const double c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
-        const double shift = t * m[p][r];
-        const int o = 3 - p - r;
-        m[p][p] -= shift;
-        m[r][r] += shift;
-        m[p][r] = m[r][p] = 0.0;
-        const double mop = m[o][p], mor = m[o][r];
-        m[o][p] = m[p][o] = c * mop - s * mor;
-        m[o][r] = m[r][o] = s * mop + c * mor;
-        for (int i = 0; i < 3; ++i) {
-          const double vp = v[i][p], vr = v[i][r];
-          v[i][p] = c * vp - s * vr;
-          v[i][r] = s * vp + c * vr;
-        }
-      }
-  }
-
-  for (int k = 0; k < 3; ++k) {
-    moments[k] = m[k][k];
-    for (int i = 0; i < 3; ++i) a[3 * k + i] = v[i][k];
-  }
-}
-
-/// Largest moment first; the rows of `a` are sorted with their moments and stay right-handed.
-inline void sort_axes(double moments[3], double a[9])
-{
-  auto swap = [&](int k, int l) {
-    std::swap(moments[k], moments[l]);
-    for (int i = 0; i < 3; ++i) {
-      const double row = a[3 * k + i];
-      a[3 * k + i] = a[3 * l + i];
-      a[3 * l + i] = -row;
-    }
-  };
-  for (int k = 0; k < 2; ++k)
-    for (int l = 0; l < 2 - k; ++l)
-      if (moments[l] < moments[l + 1]) swap(l, l + 1);
-}
-
-/// Sets moments that are zero except for rounding to exactly zero: a linear body has two rotational
-/// degrees of freedom, a point none.
-inline void drop_vanishing_moments(double moments[3])
-{
-  const double largest = std::max({moments[0], moments[1], moments[2]});
-  for (int i = 0; i < 3; ++i)
-    if (moments[i] < LINEAR_FRACTION * largest || moments[i] <= 0.0) moments[i] = 0.0;
 }
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -77,43 +77,14 @@ class RememberedLoads {
   }
 
   /// Only the present load is known; or as many at equal intervals.
-  void begin(int loads = 1, double interval = 0.0)
-  {
-    k = known = loads;
-    compares = false;
-    for (int j = 0; j <= MOST_LOADS; ++j) ages[j] = j * interval;
-  }
+  void begin(int loads = 1, double interval = 0.0);
 
   int loads() const { return k; }
   /// Rows of a history.
   int values() const { return k + 2; }
 
   /// The weights for a step of h.
-  void prepare(double h)
-  {
-    const int n = values();
-    const Nodal all(ages, k, h), fewer(ages, k - 1, h), more(ages, k + 1, h);
-    corrector = CorrectorCoefficients();
-    corrector.c[0] = 2.0 * all.twice(0.0, 1.0);
-    corrector.c[1] = 2.0 * all.once(0.0, 1.0);
-    corrector.weight2 = corrector.c[0] * corrector.c[0];
-    corrector.moment = -all.thrice(0.0, 1.0);
-    const auto next = fewer.about(1.0);    // the new load replaces the oldest one
-    for (int j = 2; j < n; ++j) corrector.c[j] = 2.0 * next[j - 2] / (j * (j - 1));
-
-    const double from_trial = n * (n - 1) * all.scale, from_dropped = (n + 1) * n * more.scale;
-    to_trial = 2.0 / from_trial;
-    of_fewer = (n - 1) * (n - 2) * fewer.scale * fewer.once(0.0, 1.0);
-    of_more = k < known && compares ? from_trial * more.once(0.0, 1.0) : 0.0;
-    int steps = 0;
-    while (steps < std::min({LAG, (k - 2) / 2, known - 1}) &&
-           ages[steps + 1] - ages[steps] < LONGER * std::fabs(h))
-      ++steps;
-    const double back = steps > 0 ? -ages[steps] / std::fabs(h) : 0.0;
-    lag = {from_trial * all.twice(back, 0.0), from_trial * all.once(back, 0.0)};
-    lag_of_dropped = {from_dropped * more.twice(back, 0.0), from_dropped * more.once(back, 0.0)};
-    if (k >= known) lag_of_dropped = {};
-  }
+  void prepare(double h);
   const CorrectorCoefficients &coefficients() const { return corrector; }
 
   /// The accelerations in a predicted history.
@@ -128,90 +99,21 @@ class RememberedLoads {
   /// Integrator::correct(), and the errors of the step.  reach: displacement of the outermost part
   /// of the body per radian.
   Correction correct(const Integrator &integrator, const RigidBody &body, double reach,
-                     const Load &load, const double *axes, double *rows, StepErrors &found) const
-  {
-    const Row before = accelerations(rows);
-    const Correction correction = integrator.correct(body, load, axes, rows);
-    Row dropped, change, place, rate;
-    std::copy_n(trial_of(rows) + Scheme::SECOND_WIDTH, Scheme::SECOND_WIDTH, dropped.begin());
-    found = errors(integrator, body, reach, load, axes, before, rows, change);
-    for (int i = 0; i < Scheme::SECOND_WIDTH; ++i) {
-      place[i] = lag[0] * change[i] - lag_of_dropped[0] * dropped[i];
-      rate[i] = lag[1] * change[i] - lag_of_dropped[1] * dropped[i];
-    }
-    integrator.displace(body, place.data(), rate.data(), rows);
-    return correction;
-  }
+                     const Load &load, const double *axes, double *rows, StepErrors &found) const;
 
   /// The errors of a step whose predicted accelerations were `before`.  axes: of any pose of the
   /// step.  change: of the trial row.
   StepErrors errors(const Integrator &integrator, const RigidBody &body, double reach,
-                    const Load &load, const double *axes, const Row &before, double *rows) const
-  {
-    Row change;
-    return errors(integrator, body, reach, load, axes, before, rows, change);
-  }
-  StepErrors errors(const Integrator &integrator, const RigidBody &body, double reach,
                     const Load &load, const double *axes, const Row &before, double *rows,
-                    Row &change) const
-  {
-    double *trial = trial_of(rows), turn[3];
-    const auto size = [&](const double *row) {
-      return RememberedLoads::size(body, reach, axes, row);
-    };
-    const double *now = rows + 2 * Scheme::SECOND_WIDTH;
-    Row residual;
-    for (int i = 0; i < Scheme::SECOND_WIDTH; ++i) {
-      residual[i] = now[i] - before[i];
-      change[i] = to_trial * residual[i] - trial[i];
-      trial[i] += change[i];
-      trial[Scheme::SECOND_WIDTH + i] = 0.0;
-    }
-    StepErrors found;
-    found.fewer = std::fabs(of_fewer) * size(rows + (k + 1) * Scheme::SECOND_WIDTH);
-    found.more = std::fabs(of_more) * size(change.data());
-    const double most = size(residual.data());
-    found.same = std::fabs(corrector.c[1]) * most;
-    found.length = std::fabs(corrector.c[0]) * most;
-
-    const BodyState state = integrator.body_state(body, rows);
-    Integrator::turn_of(body, axes, &residual[Scheme::ANGULAR_MOMENTUM], turn);
-    const double way = GearQuat::length(residual.data()), per_h = 1.0 / integrator.step();
-    double rates = body.mass * GearQuat::length(state.velocity) * way;
-    for (int i = 0; i < 3; ++i) rates += body.inertia[i] * std::fabs(state.omega_body[i] * turn[i]);
-    found.energy = std::fabs(corrector.c[0]) *
-            (GearQuat::length(load.force) * way +
-             GearQuat::length(load.torque_space) * GearQuat::length(turn)) +
-        std::fabs(corrector.c[1] * per_h) * rates;
-    return found;
-  }
+                    Row &change) const;
 
   /// The part of the errors that no step is short enough to remove: forces are evaluated at rounded
   /// coordinates.
   static StepErrors rounding(const Integrator &integrator, const RigidBody &body, double reach,
-                             const Load &load, const double *rows)
-  {
-    constexpr double LAST_DIGIT = std::numeric_limits<double>::epsilon();
-    const double *x = rows + Scheme::POSITION;
-    const BodyState state = integrator.body_state(body, rows);
-    StepErrors found;
-    found.length =
-        LAST_DIGIT * (std::max({std::fabs(x[0]), std::fabs(x[1]), std::fabs(x[2])}) + reach);
-    found.energy = found.length * GearQuat::length(load.force) +
-        2.0 * LAST_DIGIT *
-            (translational_energy(body, state.velocity) +
-             rotational_energy(body, state.omega_body));
-    return found;
-  }
+                             const Load &load, const double *rows);
 
   /// A step of h is complete.
-  void conclude(double h)
-  {
-    for (int j = std::min(known, (int) ages.size() - 1); j > 0; --j)
-      ages[j] = ages[j - 1] + std::fabs(h);
-    known = std::min(known + 1, (int) ages.size());
-    compares = true;
-  }
+  void conclude(double h);
 
   /// The number of loads for which the last term has the least effect.
   int better(const StepErrors &errors) const
@@ -249,10 +151,11 @@ class RememberedLoads {
   template <class V> void fields(V &v) { v(k, known, compares, ages); }
 
  private:
+  using Ages = std::array<double, MOST_LOADS + 1>;
   int carries;
-  int k = 1, known = 1;                            ///< loads; times
-  bool compares = false;                           ///< trial rows are those of the last step
-  std::array<double, MOST_LOADS + 1> ages = {};    ///< how long ago, the latest first
+  int k = 1, known = 1;     ///< loads; times
+  bool compares = false;    ///< trial rows are those of the last step
+  Ages ages = {};           ///< how long ago, the latest first
 
   // weights of the present step
 
@@ -268,45 +171,15 @@ class RememberedLoads {
     Array c = {1.0};
     double scale = 1.0;    ///< product of 1 - s_j
 
-    Nodal(const std::array<double, MOST_LOADS + 1> &ages, int count, double h)
-    {
-      for (int k = 0; k < count; ++k, ++terms) {
-        const double back = ages[std::min(k, MOST_LOADS)] / std::fabs(h), way = 1.0 + back;
-        for (int j = terms; j > 0; --j) c[j] = (c[j - 1] + back * c[j]) / way;
-        c[0] *= back / way;
-        scale *= way;
-      }
-    }
-    double once(double from, double to) const { return integral(c, terms, from, to); }
+    Nodal(const Ages &ages, int count, double h);
+    double once(double from, double to) const;
     /// Weighted by the time until the end of the step, or by its square.
     double twice(double from, double to) const { return weighted(1, from, to); }
     double thrice(double from, double to) const { return weighted(2, from, to); }
-    Array about(double s) const
-    {
-      Array p = c;
-      for (int i = 0; i + 1 < terms; ++i)
-        for (int j = terms - 2; j >= i; --j) p[j] += s * p[j + 1];
-      return p;
-    }
+    Array about(double s) const;
 
    private:
-    double weighted(int times, double from, double to) const
-    {
-      std::array<double, MOST_LOADS + 4> p = {};
-      std::copy_n(c.begin(), terms, p.begin());
-      for (int k = 1; k <= times; ++k)
-        for (int j = terms + k - 1; j > 0; --j) p[j] -= p[j - 1];
-      return integral(p, terms + times, from, to);
-    }
-    template <class P> static double integral(const P &p, int terms, double from, double to)
-    {
-      double a = 0.0, b = 0.0;
-      for (int j = terms - 1; j >= 0; --j) {
-        a = a * from + p[j] / (j + 1);
-        b = b * to + p[j] / (j + 1);
-      }
-      return b * to - a * from;
-    }
+    double weighted(int times, double from, double to) const;
   };
 
   double *trial_of(double *rows) const
@@ -315,12 +188,7 @@ class RememberedLoads {
   }
 
   /// The displacement of the outermost part of a body in a row.
-  static double size(const RigidBody &body, double reach, const double *axes, const double *row)
-  {
-    double turn[3];
-    Integrator::turn_of(body, axes, row + Scheme::ANGULAR_MOMENTUM, turn);
-    return std::max(GearQuat::length(row), reach * GearQuat::length(turn));
-  }
+  static double size(const RigidBody &body, double reach, const double *axes, const double *row);
 };
 
 /// What limits the growth of the next step.
@@ -377,55 +245,19 @@ struct StepControl {
   };
 
   /// Another try.
-  Next repeat(double error, double step, int loads, Growth &growing) const
-  {
-    double ratio = SHRINK_FAILED;
-    if (std::isfinite(error))
-      ratio = std::clamp(SAFETY * allowed(error, loads), SHRINK_FAILED, SHRINK_AT_LEAST);
-    const bool again = growing.failed;    // the loads are of little use
-    growing = {false, true};
-    return {std::copysign(std::max(shortest, ratio * std::fabs(step)), step),
-            again && loads > 1 ? loads - 1 : loads, false};
-  }
+  Next repeat(double error, double step, int loads, Growth &growing) const;
 
   /// The step after one with these errors.  farthest: longest step, for any errors.
   Next next(const StepErrors &errors, double step, const RememberedLoads &remembered,
-            Growth &growing, double farthest = std::numeric_limits<double>::infinity()) const
-  {
-    const int now = remembered.loads();
-    const double ratio = SAFETY * allowed(error(errors), now);
-    const int loads = growing.starts ? std::min(now + 1, MOST_LOADS) : remembered.better(errors);
-    growing.starts = growing.starts && ratio >= GROWS_FAST;
-    const double growth = growing.failed ? 1.0 : growing.starts ? GROWTH_OF_START : GROWTH;
-    growing.failed = false;
-    const double before = std::fabs(step), clear = CLEAR_OF_LIMIT * farthest;
-    double size = std::min(std::clamp(ratio, SHRINK, growth) * before,
-                           before > farthest ? clear : std::max(clear, before));
-    const bool held = size < shortest;
-    size = std::max(size, shortest);
-    if (longest > 0.0) size = std::min(size, longest);
-    return {std::copysign(size, step), loads, held};
-  }
+            Growth &growing, double farthest = std::numeric_limits<double>::infinity()) const;
 
   /// The step of a history without the third derivative of positions, `jerk`.
-  double first_step(double jerk, double speed, double mass) const
-  {
-    if (!energy) return std::cbrt(6.0 * eps / jerk);
-    const double rest = std::sqrt(2.0 * eps / mass);    // change of velocity with the energy eps,
-                                                        // from rest
-    return std::sqrt(2.0 / jerk * std::min(rest, speed > 0.0 ? eps / (mass * speed) : rest));
-  }
+  double first_step(double jerk, double speed, double mass) const;
 };
 
 /// Equal steps, at most as long as the given one, that end exactly at a time in the near future: a
 /// shortened last step would be useless for the following steps.  way: time until then, positive.
-inline double even_step(double step, double way)
-{
-  constexpr double FAR = 10.0, ROUNDING = 1.0e-9;
-  const double size = std::fabs(step), number = way / size;
-  if (!(number < FAR)) return step;
-  return std::copysign(way / std::max(1.0, std::ceil(number - ROUNDING)), step);
-}
+double even_step(double step, double way);
 
 }    // namespace LAMMPS_NS::GearQuat
 

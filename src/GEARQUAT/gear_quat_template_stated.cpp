@@ -5,7 +5,7 @@
 
 #include "gear_quat_template.h"
 
-#include "gear_quat_math.h"
+#include "gear_quat_shapes.h"
 
 #include "atom.h"
 #include "comm.h"

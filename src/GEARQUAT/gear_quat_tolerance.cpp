@@ -356,9 +356,10 @@ void Tolerance::note_correction(const Integrator &integrator, const Coupling &co
     for (const int ibody : *list) {
       const Body &body = bodies.body_at(ibody);
       const Load load = bodies.acting(ibody);
+      RememberedLoads::Row change;
       const StepErrors one =
           remembered.errors(integrator, body.rigid, body.reach(), load, bodies.axes(ibody),
-                            predicted[ibody], bodies.history(ibody));
+                            predicted[ibody], bodies.history(ibody), change);
       include(control.counted(one, rounding(integrator, ibody, load)));
     }
   coupling.errors(update->dt, integrator.values(), [this](const StepErrors &one) {

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "gear_quat_shapes.h"
 #include "follow.h"
 #include "numbers.h"
 

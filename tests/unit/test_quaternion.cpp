@@ -1,5 +1,6 @@
 /* gear_quat_math.h: the paper's Eqs. 2 to 10 with the misprints of W and A corrected. */
 
+#include "gear_quat_shapes.h"
 #include "checks.h"
 #include "oracles/paper_step.h"
 

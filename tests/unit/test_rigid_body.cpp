@@ -1,5 +1,6 @@
 /* gear_quat_math.h: Euler's equations, energies, and the principal axes of any tensor. */
 
+#include "gear_quat_shapes.h"
 #include "checks.h"
 #include "oracles/cage_scene.h"
 

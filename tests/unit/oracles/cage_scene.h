@@ -5,7 +5,7 @@
 #pragma once
 
 #include "euler_angles.h"
-#include "gear_quat_math.h"
+#include "gear_quat_shapes.h"
 
 namespace Oracle {
 

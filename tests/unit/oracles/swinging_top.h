@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "gear_quat_shapes.h"
 #include "free_top.h"
 #include "gear_quat_integrator.h"
 #include "taylor_top.h"
