@@ -170,6 +170,9 @@ inline double angle_about_z(const double *q)
 
 /* ---------------------------------------------------------------------- */
 
+/// A moment of inertia below this fraction of the largest counts as zero, as in fix rigid.
+constexpr double LINEAR_FRACTION = 1.0e-7;
+
 /// Mass and principal moments.  A zero moment has no rotational degree of freedom.
 struct RigidBody {
   double mass;

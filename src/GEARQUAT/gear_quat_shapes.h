@@ -16,9 +16,6 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// A moment of inertia below this fraction of the largest counts as zero, as in fix rigid.
-constexpr double LINEAR_FRACTION = 1.0e-7;
-
 /// The unit quaternion of a rotation matrix A (space -> body, row-major), without small divisors.
 void quaternion_from_matrix(const double a[9], double *q);
 
