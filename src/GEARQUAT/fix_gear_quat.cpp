@@ -161,8 +161,6 @@ void FixGearQuat::setup_pre_exchange()
 {
   for (int i = 0; atom->vest && i < atom->nlocal; ++i)    // no fix extrapolates the first ones
     if (ownership.in_body(i)) std::copy_n(atom->v[i], 3, atom->vest[i]);
-  if (ownership.follow_box())
-    step.forget("Fix gear/quat: the box was remapped since the last run; histories are rebuilt");
   if (step.coupling && !step.coupling->knows_box())
     step.forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
   driven_box.begin_setup();
@@ -261,7 +259,7 @@ void FixGearQuat::update_bodies()
 void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
   step.start(f, torque);
-  driven_box.begin_step();
+  driven_box.follow();
   sites.advance_densities(update->dt);
   step.begin(vflag, f);
 }
@@ -270,7 +268,6 @@ void FixGearQuat::end_step(double **f, double **torque)
 {
   step.end(f, torque);
   sites.advance_densities(update->dt);
-  driven_box.end_step();
   if (box_change != NO_BOX_CHANGE) ownership.note_box();
   if (step.has_readers()) show_bodies();
   if (step.coupling && step.coupling->is_tilted()) next_reneighbor = update->ntimestep + 1;

@@ -124,10 +124,9 @@ struct CellFriction {
   bool implicit = false;
 
   CellFriction() = default;
-  /// alpha: of the thermostat, the same along all axes.  weights: b.  times: factor of G in the
-  /// damping.
+  /// alpha: of the thermostat, the same along all axes.  weights: b.
   CellFriction(const Friction &alpha, const Upper &matrix, const Upper &rate,
-               const double (&weights)[3], double times = 2.0) :
+               const double (&weights)[3]) :
       rotation(alpha.rotation),
       implicit(alpha.implicit)
   {
@@ -135,7 +134,7 @@ struct CellFriction {
     double trace = alpha.translation[0];
     for (int k = 0; k < 3; ++k) trace += weights[k] * rate[k];
     drag = inverse * rate * matrix;
-    damping = drag.scaled(times) + Upper::one().scaled(trace);
+    damping = drag.scaled(2.0) + Upper::one().scaled(trace);
     inverse.times(alpha.common, common);
     for (int k = 0; k < 3; ++k) unforeseen[k] = alpha.unforeseen[k] - drag.row_times(k, common);
   }

@@ -178,8 +178,15 @@ void Sites::refuse_tears() const
     error->all(
         FLERR,
         "Fix gear/quat: the box was changed while body {} lies across its faces, which tears "
-        "it; use change_box with remap, or first move the body inside with displace_atoms",
+        "it; first move the body inside with displace_atoms, or change the box with fix deform",
         all[1]);
+  if (all[2] && !std::equal(domain->h, domain->h + 6, ownership.box().begin()))
+    error->all(
+        FLERR,
+        "Fix gear/quat: the box has changed, and body {} has another shape than before: change_box "
+        "with remap moves each atom by itself; change the box with fix deform, which moves bodies "
+        "as a whole, or, to keep this shape, define the fix after the change",
+        all[2]);
   if (all[2] && comm->me == 0)
     error->warning(
         FLERR,

@@ -6,11 +6,9 @@
 #include "gear_quat_driven_box.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_driven_cell.h"
 #include "gear_quat_fixes.h"
 #include "gear_quat_images.h"
 #include "gear_quat_known_styles.h"
-#include "gear_quat_ranks.h"
 #include "gear_quat_step.h"
 
 #include "atom.h"
@@ -65,46 +63,6 @@ void DrivenBox::init()
                "Fix gear/quat: the velocities of bodies contain the flow of fix deform remap v, "
                "which is not thermal motion; leave out keywords temp and isokinetic, or use "
                "remap x");
-  drive(smooth_driver());
-}
-
-void DrivenBox::rest()
-{
-  driven = false;
-  drive(nullptr);
-}
-
-/// The fix that moves the box and is followed with the order of the method, or null.  Fixes that
-/// also integrate atoms are of second order, and a discontinuous box has no derivatives.
-Fix *DrivenBox::smooth_driver() const
-{
-  Fix *driver = nullptr;
-  for (auto *other : modify->get_fix_list()) {
-    if (!changes_box(other)) continue;
-    if (driver || !utils::strmatch(other->style, "^deform$")) return nullptr;
-    driver = other;
-  }
-  const bool alone = ownership.number_of_atoms() == atom->natoms && args.masks.empty() &&
-      args.isokinetic == Isokinetic::NONE && utils::strmatch(update->integrate_style, "^verlet");
-  return driver && driver->nevery == 1 && alone ? driver : nullptr;
-}
-
-/// The variables of the thermostat are kept.
-void DrivenBox::drive(Fix *deform)
-{
-  if (!deform && !cell) return;
-  if (!deform == !!cell) {
-    Fields kept;
-    if (step.coupling) step.coupling->fields(kept);
-    auto made = deform
-        ? std::make_unique<DrivenCell>(lmp, fix, bodies, args.thermostat, step.scheme())
-        : nullptr;
-    cell = made.get();
-    step.set_coupling(made ? std::move(made) : make_coupling(lmp, fix, args, bodies, sites));
-    Fields again(kept.numbers());
-    if (step.coupling && !kept.numbers().empty()) step.coupling->fields(again);
-  }
-  if (cell) cell->obey(deform);
 }
 
 /* ----------------------------------------------------------------------
@@ -113,28 +71,13 @@ void DrivenBox::drive(Fix *deform)
 
 void DrivenBox::begin_remap()
 {
-  if (!cell) ownership.note_box();    // otherwise bodies are in the box at the end of the step
-}
-
-void DrivenBox::end_step()
-{
-  if (!cell) return;
   ownership.note_box();
-  cell->put_back_box();
 }
 
 void DrivenBox::end_remap()
 {
-  if (cell && cell->is_asking()) {
-    cell->note_remap();
-    return;
-  }
-  if (cell) {
-    cell->remap(ownership.box(), step.started);
-  } else {
-    refuse_jump();
-    remap_centers();
-  }
+  refuse_jump();
+  remap_centers();
   place_sites();
 }
 
@@ -195,44 +138,25 @@ void DrivenBox::place_sites()
    atoms do not move
 ------------------------------------------------------------------------- */
 
-/// Follows the box at the beginning or end of a run, or after a discontinuity of the box.
 void DrivenBox::follow()
 {
-  if (driven) follow(domain->h, domain->boxlo);
-}
-
-void DrivenBox::begin_step()
-{
-  if (!driven) return;
-  if (!cell) {
-    follow();
-    return;
-  }
-  const auto &then = cell->foretell();
-  if (!cell->remaps_atoms()) follow(then.h.data(), then.h.data() + 6);
-}
-
-/// Follows the change to the box h with this corner.
-void DrivenBox::follow(const double *h, const double *corner)
-{
   const auto &box = ownership.box();
-  const bool changed = !std::equal(h, h + 6, box.begin());
-  if (!changed) return;
+  if (!driven || std::equal(domain->h, domain->h + 6, box.begin())) return;
   double change[6], way[3];
-  for (int k = 0; k < 6; ++k) change[k] = h[k] - box[k];
+  for (int k = 0; k < 6; ++k) change[k] = domain->h[k] - box[k];
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     through(change, bodies.body_at(ibody).image.data(), way);
     move_center(ibody, way);
   }
-  ownership.note_box(h, corner);
+  ownership.note_box();
 }
 
 /// The body keeps its velocity relative to the faces that its owner atom has crossed since the last
 /// call, also if fix deform has flipped the box.  images: of the owner atom, now.
 void DrivenBox::pass_faces(int ibody, const double *images)
 {
-  const auto *rates = sites.rates_of_faces().data();
-  if (step.phase == Phase::BEGUN) rates = cell ? cell->rate_of_faces().m.data() : domain->h_rate;
+  const double *rates =
+      step.phase == Phase::BEGUN ? domain->h_rate : sites.rates_of_faces().data();
   double away[2][3], periods[3], velocity[3];
   through(ownership.box().data(), bodies.body_at(ibody).image.data(), away[0]);
   through(domain->h, images, away[1]);

@@ -6,7 +6,8 @@
 /* A box that another fix changes during a run (doc/theory.md, Boxes that other commands change).
 
    A fix that remaps atoms with the box notifies the rigid fixes before and after (Fix::deform()).
-   Then the centers of mass are remapped, and bodies keep their shapes, orientations and velocities.
+   Then the centers of mass are remapped, and bodies keep their shapes, orientations and velocities:
+   an error of first order, as with fix rigid.
 
    If the box changes without a remap, atoms do not move.  The center of mass of a body, which is
    unwrapped, stays with its owner atom, and the other images of the body move with the box.  With
@@ -27,7 +28,6 @@ class Fix;
 
 namespace LAMMPS_NS::GearQuat {
 
-class DrivenCell;
 class OtherFixes;
 class Step;
 struct Arguments;
@@ -45,19 +45,15 @@ class DrivenBox : protected Pointers {
   /// Ends the run if another fix changes the box in a way that bodies cannot follow.  Before a run.
   void init();
   /// Called before a minimization, in which no other fix changes the box.
-  void rest();
+  void rest() { driven = false; }
   /// True if another fix changes the box in this run.
   bool any() const { return driven; }
 
   /// Before and after another fix remaps atoms with the box.  Collective.
   void begin_remap();
   void end_remap();
-  /// Called when a step has ended and sites are placed.
-  void end_step();
-  /// Called when the box may have changed without a remap.  Collective.
+  /// Called before a step, and when the box may have changed without a remap.
   void follow();
-  /// Called before a step, for the same changes of the box.
-  void begin_step();
   /// Called in LAMMPS' setup, before atoms are wrapped.
   void begin_setup();
   /// Called when bodies were made again.  Local.
@@ -76,11 +72,6 @@ class DrivenBox : protected Pointers {
   OtherFixes &others;
   Step &step;
   bool driven = false;
-  DrivenCell *cell = nullptr;    ///< the coupling of the step, if the motion of the box is followed
-
-  Fix *smooth_driver() const;
-  void follow(const double *h, const double *corner);
-  void drive(Fix *deform);
 
   void pass_faces(int ibody, const double *images);
   void refuse_jump() const;

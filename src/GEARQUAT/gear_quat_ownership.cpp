@@ -90,13 +90,8 @@ void Ownership::count()
 
 void Ownership::note_box()
 {
-  note_box(domain->h, domain->boxlo);
-}
-
-void Ownership::note_box(const double *h, const double *corner)
-{
-  last_box.assign(h, h + 6);
-  last_box.insert(last_box.end(), corner, corner + 3);
+  last_box.assign(domain->h, domain->h + 6);
+  last_box.insert(last_box.end(), domain->boxlo, domain->boxlo + 3);
 }
 
 void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh,

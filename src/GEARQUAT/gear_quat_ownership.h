@@ -123,14 +123,8 @@ class Ownership : protected Pointers {
   bigint number_of_large() const { return (bigint) bodies.large.size(); }
   /// The box of the positions of bodies, as Domain::h and boxlo.
   const std::vector<double> &box() const { return last_box; }
-  /// Sets this box to the current box of LAMMPS, or to another box.
+  /// Sets this box to the current box of LAMMPS.
   void note_box();
-  void note_box(const double *h, const double *corner);
-  /// Before a run, and before atoms are exchanged: if change_box has remapped the atoms of bodies
-  /// from box() to the present box, restores shapes and orientations of the bodies and remaps their
-  /// centers.  Returns true, with a warning, if there are any; warns of bodies that another box has
-  /// deformed otherwise.  Needs no ghosts.  In gear_quat_remap.cpp.  Collective.
-  bool follow_box();
 
   // a step
 

@@ -60,10 +60,9 @@ static Scheme scheme_of_coupling(Scheme scheme)
 }
 
 /// The keywords exclude two couplings, and a coupling with a changing step if it does not support
-/// one.
-std::unique_ptr<Coupling> GearQuat::make_coupling(LAMMPS *lmp, const Fix *fix,
-                                                  const Arguments &args, Bodies &bodies,
-                                                  const Sites &sites)
+/// one.  Null for none.
+static std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, const Arguments &args,
+                                               Bodies &bodies, const Sites &sites)
 {
   if (args.pressure.any())
     return std::make_unique<Barostat>(lmp, fix, bodies, sites, args.thermostat, args.pressure,
@@ -872,12 +871,6 @@ void Step::make_integrator()
 {
   integrator = std::make_unique<Integrator>(tolerance ? tolerance->integrator()
                                                       : Integrator(scheme(), length()));
-}
-
-void Step::set_coupling(std::unique_ptr<Coupling> other)
-{
-  coupling = std::move(other);
-  blowup.coupling = coupling.get();
 }
 
 void Step::set_scheme(const Scheme &scheme)

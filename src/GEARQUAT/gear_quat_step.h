@@ -65,10 +65,6 @@ struct Fleet {
   bool moves(const Fix *fix, const Atom *atom, int i) const;
 };
 
-/// The coupling of all bodies selected by the keywords, null for none.
-std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, const Arguments &args,
-                                        Bodies &bodies, const Sites &sites);
-
 class Step : protected Pointers {
  public:
   /// bodies: empty, with histories of args.scheme.  tally(vflag, f): adds the virial of the

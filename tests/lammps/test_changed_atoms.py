@@ -47,12 +47,19 @@ def test_other_molecule_ids(lmp_wheel, data, ranks):
         "displace_atoms two rotate 0 0 0 0 0 1 1",
         "displace_atoms all move 20 20 20",
         "velocity two set 0.001 0 0",
-        "change_box all x scale 1.01 remap",
         "min_style cg\nminimize 0 1 5 5",
     ],
 )
 def test_rigid_changes_are_not_warned_of(lmp_wheel, data, change):
     assert told(lmp_wheel, data, change) == NOTHING
+
+
+@pytest.mark.parametrize("first", ["", "run 5\n"])
+def test_a_remapped_box(lmp_wheel, data, first):
+    """Each atom is remapped by itself, which ends the next run; fix deform moves bodies as a whole."""
+    remapped = water(data, run=f"{first}change_box all x scale 1.1 remap\nrun 5")
+    lmp_wheel.refuse(remapped, "change_box with remap moves each atom by itself")
+    told(lmp_wheel, data, "fix d all deform 1 x scale 1.1\nrun 5\nunfix d", first=first)
 
 
 # --- axes of symmetric bodies are arbitrary ------------------------------------------------------

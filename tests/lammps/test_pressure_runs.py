@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 import pressed as scene
-from pressed import REPULSIVE, distances, ends, trimers
+from pressed import REPULSIVE, ends, trimers
 from scenes import FORMULATIONS, largest_change, one_after_the_other
 
 MODES = {
@@ -209,20 +209,11 @@ def test_another_step_keeps_the_motion(lmp_tree):
 
 
 def test_change_box_between_runs(lmp_tree):
-    """If remapped, the box has another volume and continues with its rate; molecules keep their shape."""
-    change = "change_box all x scale 1.02 y scale 0.99 remap"
-    decks = [pressed(MODES["NPT"], run=f"run 50\n{change}\nrun 50")]
-    decks.append(pressed(MODES["NPT"], run="run 50"))
-    result, frames = ends(lmp_tree, decks)
-    before, after, alone = result.thermo
-    assert after["Lx"][0] == pytest.approx(1.02 * before["Lx"][-1], rel=1e-12)
-    assert after["Ly"][0] == pytest.approx(0.99 * before["Ly"][-1], rel=1e-12)
-    for table in (before, after):
-        assert largest_change(table) < 1e-6
-    assert after["f_move[23]"][0] == pytest.approx(before["f_move[23]"][-1], rel=1e-6)
-    boxes = [[table[c][-1] for c in ("Lx", "Ly", "Lz")] for table in (after, alone)]
-    lengths = [distances(rows, np.array(box)) for rows, box in zip(frames, boxes)]
-    assert np.abs(lengths[0] / lengths[1] - 1.0).max() < 1e-12
+    """The box is another one, and moves from there on."""
+    (result, _) = ends(lmp_tree, [pressed(MODES["NPT"], run="run 0\nchange_box all x delta -0.05 0.05 units box\nrun 50")])
+    before, after = result.thermo
+    assert after["Lx"][0] == pytest.approx(before["Lx"][0] + 0.1, rel=1e-12)
+    assert largest_change(after) < 1e-6
 
 
 def test_a_fix_that_comes_again_has_lost_its_rate(lmp_tree):
