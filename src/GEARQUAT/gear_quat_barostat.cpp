@@ -646,7 +646,6 @@ void Barostat::begin_start(const StartNodes &nodes)
   const double s = nodes.spacing;
   if (chain_acts()) {
     const double twice = twice_kinetic_of_box();
-    chain.begin_settled(target_of_box(0.0, nodes.h), twice, nodes.h);
     held_box =
         chain.is_stiff(target_of_box(0.0, nodes.h), twice, nodes.h, nodes.collocation.pairs());
   }
@@ -730,7 +729,6 @@ void Barostat::seed(const StartNodes &nodes, int pairs, int values)
 void Barostat::seed_local(double h, int terms)
 {
   Thermostat::seed_local(h, terms);
-  if (chain_acts()) chain.begin_settled(target_of_box(0.0, h), twice_kinetic_of_box(), h);
   const Upper now = drive();
   note_drive(now);
   friction_of_box = friction_now();

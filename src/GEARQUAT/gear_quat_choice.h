@@ -115,10 +115,9 @@ struct ChoiceOfValues {
   double edge = 0.0;     ///< radians in a step, see MotionSums
   bool exact = false;    ///< from derivatives
   Noise noise = Noise::NONE;
-  double friction = 0.0;      ///< of a coupling, times the step
   bool may_be_gear = true;    ///< the corrector may be changed, too
 
-  enum class Reason { FORMULATION, MOTION, NOISE, FRICTION };
+  enum class Reason { FORMULATION, MOTION, NOISE };
   struct Choice {
     Scheme scheme;
     Reason reason;
@@ -144,8 +143,8 @@ struct ChoiceOfValues {
       choice.scheme.rows = edge <= band * EDGE_OF_NINE ? 9 : 5;
       choice.reason = Reason::MOTION;
     }
-    if (permits(choice.scheme)) return choice;
-    choice.reason = suits_noise(choice.scheme, noise) ? Reason::FRICTION : Reason::NOISE;
+    if (suits_noise(choice.scheme, noise)) return choice;
+    choice.reason = Reason::NOISE;
     if (noise == Noise::RANDOM && !scheme.first()) {
       choice.scheme.rows = VERLET;
       return choice;
@@ -158,16 +157,10 @@ struct ChoiceOfValues {
       for (int n = tuned ? 9 : most; n >= fewest; --n) {
         if (tuned && (n == 8 || n == 6)) continue;    // odd numbers, and four, have tuned sets
         choice.scheme.rows = n;
-        if (permits(choice.scheme)) return choice;
+        if (suits_noise(choice.scheme, noise)) return choice;
       }
     }
     return choice;
-  }
-
- private:
-  bool permits(const Scheme &scheme) const
-  {
-    return suits_noise(scheme, noise) && (friction == 0.0 || friction <= FrictionLimit::of(scheme));
   }
 };
 

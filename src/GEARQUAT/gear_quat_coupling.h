@@ -51,8 +51,6 @@ class Coupling : protected Pointers {
   virtual void begin_run(bool anew, double h) = 0;
   /// The scheme of the bodies has changed; there are no histories.  Local.
   virtual void set_scheme(const Scheme & /*scheme*/) {}
-  /// After begin_run(): the strongest friction expected in the run, times the step.  Local.
-  virtual double friction_ahead(double /*h*/) const { return 0.0; }
   /// fix_modify extra/dof: degrees of freedom of translation that do not count.  Local.
   virtual void subtract(int /*freedoms*/) {}
   /// A reason for a new start of histories, null for none.

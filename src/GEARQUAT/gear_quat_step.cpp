@@ -370,7 +370,7 @@ Starter Step::starter(bool needed)
   };
   if (args.automatic_values)
     foresee = [this](const MotionSums &here) {
-      return scene_of_start(here).choose(args.scheme).scheme;
+      return scene_of(here).choose(args.scheme).scheme;
     };
   return {fix, &bodies, &ownership, &sites, coupling.get(), scheme(), needed, choose, foresee};
 }
@@ -528,18 +528,10 @@ ChoiceOfValues Step::scene_of(const MotionSums &here) const
   return scene;
 }
 
-/// Includes the friction of a coupling whose run has begun.
-ChoiceOfValues Step::scene_of_start(const MotionSums &here) const
-{
-  ChoiceOfValues scene = scene_of(here);
-  if (coupling) scene.friction = coupling->friction_ahead(length());
-  return scene;
-}
-
 /// Histories have this scheme after the call.
 Scheme Step::choose_scheme(const MotionSums &here)
 {
-  const ChoiceOfValues scene = scene_of_start(here);
+  const ChoiceOfValues scene = scene_of(here);
   if (args.automatic_values) {
     const ChoiceOfValues::Choice choice = scene.choose(args.scheme);
     edge_rate = scene.edge / std::fabs(length());
@@ -559,8 +551,6 @@ void Step::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice
   std::string why;
   if (choice.reason == Reason::NOISE)
     why = "because " + forces.words();
-  else if (choice.reason == Reason::FRICTION)
-    why = "because the thermostat has a strong friction";
   else if (choice.reason == Reason::FORMULATION)
     why = "as always with corrector gear";
   else if (std::isfinite(scene.edge))

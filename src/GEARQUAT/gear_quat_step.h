@@ -97,8 +97,6 @@ class Step : protected Pointers {
   void take_velocities(bigint of_step, bool end);
   /// Histories and integrator adopt LAMMPS' time step.
   void follow_length();
-  /// Replaces the coupling between runs; null for none.
-  void set_coupling(std::unique_ptr<Coupling> other);
 
   // a step; f, torque: of atoms; all collective
 
@@ -212,7 +210,6 @@ class Step : protected Pointers {
   std::set<std::string> warned;    ///< of these rates
   MotionSums sums_of(const MotionSums &here) const;
   ChoiceOfValues scene_of(const MotionSums &here) const;
-  ChoiceOfValues scene_of_start(const MotionSums &here) const;
   Scheme choose_scheme(const MotionSums &here);
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
   void look_at_rates(double edge, bool ahead);

@@ -5,7 +5,6 @@
 
 #include "gear_quat_thermostat.h"
 
-#include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -52,7 +51,6 @@ Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Thermo
 
 void Thermostat::set_scheme(const Scheme &scheme)
 {
-  most_friction = FrictionLimit::of(scheme);
   single_pass = scheme.coupled_passes() == 1;
 }
 
@@ -252,11 +250,6 @@ void Thermostat::errors(double h, int values, const Include &include) const
 
 void Thermostat::note_step(double h)
 {
-  watch_cold(h);
-}
-
-void Thermostat::watch_cold(double h)
-{
   if (!acts()) return;
   for (const Part part : {TRANSLATION, ROTATION}) {
     const bool is_cold = twice[part] < COLD * freedoms[part] * line.kt;
@@ -339,9 +332,10 @@ static constexpr double ROUNDING_OF_TARGET = 1.0e-12;
 
 static constexpr double TOLD_MOTION = 0.01;
 
-// the friction in a step that changes, relative to the limit
+// the strongest friction that bodies follow, times the step; and the part of it that a changing step
+// permits
 
-static constexpr double SAFE = 0.8;
+static constexpr double STRONGEST = 0.5, SAFE = 0.8;
 
 static constexpr Mask NO_TORQUE = torque_off(0) | torque_off(1) | torque_off(2);
 
@@ -485,27 +479,12 @@ void Thermostat::refuse_nothing() const
                "translation than the bodies have");
 }
 
-/* ----------------------------------------------------------------------
-   the friction, and what it permits
-------------------------------------------------------------------------- */
-
-double Thermostat::friction_ahead(double h) const
-{
-  double strongest = 0.0;
-  for (int c = 0; c < (int) chains.size(); ++c) {
-    const ChainTarget target = target_of(c, 0.0, h);
-    if (!(twice_of(c) > 0.0) || !(target.freedoms > 0.0)) continue;
-    strongest = std::max(strongest, friction_bound(chains[c], target, twice_of(c)));
-  }
-  return strongest * std::fabs(h);
-}
-
 /// The longest step permitted by the friction and the damping time.
 double Thermostat::longest_step() const
 {
   if (!acts()) return std::numeric_limits<double>::infinity();
   const double longest = words.damp / FEWEST_STEPS, strongest = strongest_friction();
-  return strongest > 0.0 ? std::min(longest, SAFE * most_friction / strongest) : longest;
+  return strongest > 0.0 ? std::min(longest, SAFE * STRONGEST / strongest) : longest;
 }
 
 double Thermostat::strongest_friction() const
@@ -515,13 +494,12 @@ double Thermostat::strongest_friction() const
   return strongest;
 }
 
-std::vector<Rate> Thermostat::rates(double h, bool ahead) const
+std::vector<Rate> Thermostat::rates(double h, bool /*ahead*/) const
 {
   if (!acts()) return {};
-  const double found = ahead ? friction_ahead(h) : std::fabs(h) * strongest_friction();
-  const double period =
-      std::max(FEWEST_STEPS * std::fabs(h), words.damp * found / (0.5 * most_friction));
-  return {{"the friction of the thermostat is", found, most_friction,
+  const double found = std::fabs(h) * strongest_friction();
+  const double period = std::max(FEWEST_STEPS * std::fabs(h), 2.0 * words.damp * found / STRONGEST);
+  return {{"the friction of the thermostat is", found, STRONGEST,
            fmt::format("use a damping time of {:g} or longer", rounded_up(period))}};
 }
 
@@ -530,17 +508,9 @@ std::vector<Rate> Thermostat::rates(double h, bool ahead) const
    the start to each node
 ------------------------------------------------------------------------- */
 
-/// Chains that have never moved start near their stationary state.
-void Thermostat::settle_fresh(double h)
-{
-  for (size_t c = 0; c < chains.size(); ++c)
-    chains[c].begin_settled(target_of(c, 0.0, h), twice_of(c), h);
-  note_friction();
-}
-
 void Thermostat::begin_start(const StartNodes &nodes)
 {
-  settle_fresh(nodes.h);
+  note_friction();
   twice_at_nodes.resize(chains.size());
   held.resize(chains.size());
   for (size_t c = 0; c < chains.size(); ++c) {
@@ -587,9 +557,9 @@ void Thermostat::seed(const StartNodes &nodes, int pairs, int values)
                    values + 1);
 }
 
-void Thermostat::seed_local(double h, int /*terms*/)
+void Thermostat::seed_local(double /*h*/, int /*terms*/)
 {
-  settle_fresh(h);
+  note_friction();
   for (size_t c = 0; c < chains.size(); ++c) {
     const double now = twice_of(c);
     chains[c].seed(&now, 0, 0.0, 1);

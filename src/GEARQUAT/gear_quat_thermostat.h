@@ -47,7 +47,6 @@ class Thermostat : public Coupling {
   /// Ends the run if there is nothing to thermostat.
   void begin_run(bool anew, double h) override;
   void set_scheme(const Scheme &scheme) override;
-  double friction_ahead(double h) const override;
   void subtract(int freedoms) override { words.subtracted = freedoms; }
   /// A reason if the target or the degrees of freedom have changed since the last run.
   const char *reason_to_start_anew() const override;
@@ -114,7 +113,6 @@ class Thermostat : public Coupling {
   Setting made = {};                  ///< of the last step before this run
   bool waiting = false;               ///< no step of this run has begun
   double friction[2] = {};            ///< xi_1 of the chains
-  double most_friction;               ///< limit for bodies, times the step
   bool single_pass;                   ///< of the corrector
   bool strong = false;                ///< the friction of this step is taken implicitly
   double unit = 1.0;                  ///< of the sums, see scale()
@@ -139,7 +137,6 @@ class Thermostat : public Coupling {
   void count_freedoms();
   void refuse_masks() const;
   double strongest_friction() const;
-  void settle_fresh(double h);
   void refuse_nothing() const;
   using Sums = ExactSum[2];
   void add_kinetic(int ibody, const double *velocity, const double *omega_body, Sums &sums) const;
@@ -151,7 +148,6 @@ class Thermostat : public Coupling {
   void share_friction();
   /// 2K around the start, in units of the node spacing.
   static ChainDrive drive_of(const Collocation &collocation, const Collocation::Scalar &twice);
-  void watch_cold(double h);
   void tell_freedoms();
   /// Rank 0 prints the message if it differs from the last one.
   void tell_once(std::string &last, const std::string &message) const;

@@ -173,7 +173,7 @@ NOT_IN_A_FILE = {
         MESSAGES: "warned_held told",
     },
     "thermostat Thermostat": {
-        COMMAND: "words most_friction single_pass",
+        COMMAND: "words single_pass",
         OTHERS: "fix",
         DERIVED: "made waiting line damp_before freedoms total friction of_all",
         RUN: "changes natoms twice_at_nodes held",

@@ -162,19 +162,6 @@ TEST(Choice, WithRandomAndDissipativeForcesNothingHeats)
   EXPECT_TRUE(noisy.choose(automatic(MOMENTUM)).scheme.tuned);
 }
 
-TEST(Choice, FrictionOfAThermostatIsFollowed)
-{
-  for (const double edge : {0.0, 0.5})
-    for (const double friction : {0.0, 0.1, 0.2, 0.4}) {
-      ChoiceOfValues hot = scene(edge);
-      hot.friction = friction;
-      const Scheme chosen = hot.choose(automatic(MOMENTUM)).scheme;
-      EXPECT_LE(friction, FrictionLimit::of(chosen));
-      const Scheme wanted = scene(edge).choose(automatic(MOMENTUM)).scheme;
-      EXPECT_TRUE(friction > FrictionLimit::of(wanted) || chosen.values() == wanted.values());
-    }
-}
-
 TEST(Choice, AVibrationIsFollowedUpToTwoThirdsOfTheFastest)
 {
   const auto longest = [](int values, bool is_tuned) {

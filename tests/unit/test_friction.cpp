@@ -1,9 +1,6 @@
-/* The strongest friction that a method follows, compared with bodies under a constant friction, and
-   the strongest friction of a chain. */
+/* Bodies under a constant friction, which is taken implicitly. */
 
 #include "thermostatted.h"
-
-#include "gear_quat_limits.h"
 
 using namespace Thermostatted;
 
@@ -36,31 +33,9 @@ double remains(const Scheme &scheme, double friction)
 
 }    // namespace
 
-TEST(FrictionLimit, IsWhereAFreeBodyBecomesUnstable)
+TEST(Friction, AFreeBodyComesToRest)
 {
-  int found = 0;
   for (const Formulation formulation : FORMULATIONS)
-    for (int values = formulation == FIRST ? 4 : 5; values <= (formulation == FIRST ? 8 : 12);
-         ++values) {
-      const Scheme scheme = scheme_of(formulation, values, 2);
-      const double limit = FrictionLimit::stable(scheme);
-      EXPECT_EQ(FrictionLimit::of(scheme), std::min(limit, 0.5));
-      EXPECT_LT(remains(scheme, 0.95 * limit), 1.0e-3) << scheme;
-      if (limit == FrictionLimit::MOST) continue;
-      EXPECT_GT(remains(scheme, 1.1 * limit), 1.0e3) << scheme << " " << limit;
-      ++found;
-    }
-  EXPECT_GT(found, 15);
-}
-
-TEST(Friction, ABoundHoldsForAGas)
-{
-  // a chain of one variable has a first integral
-  const double g = 3000.0, kt = 0.7;
-  for (const double part : {0.01, 0.3, 4.0, 40.0})
-    for (const double damp : {12.0, 150.0}) {
-      const ChainTarget target = {kt, 0.0, g, damp};
-      const double bound = friction_bound(Chain(1), target, part * g * kt);
-      EXPECT_NEAR(bound, std::sqrt(part - 1.0 - std::log(part)) / damp, 1.0e-12);
-    }
+    for (int values = formulation == FIRST ? 4 : 5; values <= (formulation == FIRST ? 8 : 12); ++values)
+      EXPECT_LT(remains(scheme_of(formulation, values, 2), 0.1), 1.0e-3) << formulation << values;
 }
