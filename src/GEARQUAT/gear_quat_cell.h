@@ -117,9 +117,9 @@ struct Upper {
 /// and xi:
 ///   p' = M^-1 F - damping (p - m c) - drag m c
 struct CellFriction {
-  Upper damping;    ///< M^-1 (2 G + b.G + xi) M
-  Upper drag;       ///< M^-1 G M
-  double common[3] = {0.0, 0.0, 0.0}, unforeseen[3] = {0.0, 0.0, 0.0};    ///< as in Friction
+  Upper damping;                         ///< M^-1 (2 G + b.G + xi) M
+  Upper drag;                            ///< M^-1 G M
+  double common[3] = {0.0, 0.0, 0.0};    ///< as in Friction
   double rotation = 0.0;
   bool implicit = false;
 
@@ -136,7 +136,6 @@ struct CellFriction {
     drag = inverse * rate * matrix;
     damping = drag.scaled(2.0) + Upper::one().scaled(trace);
     inverse.times(alpha.common, common);
-    for (int k = 0; k < 3; ++k) unforeseen[k] = alpha.unforeseen[k] - drag.row_times(k, common);
   }
 
   double force(int i, double met, const double *p, double mass) const
@@ -148,13 +147,12 @@ struct CellFriction {
   double torque(double met, double l) const { return met - rotation * l; }
 
   /// See Friction::solve(); the equations of x, y and z are solved backwards.
-  void solve(double share, double unit, double *residual) const
+  void solve(double share, double *residual) const
   {
     double own[3] = {0.0, 0.0, 0.0};
     for (int i = 2; i >= 0; --i) {
       const double of_others = share * damping.row_times(i, own);
-      own[i] = (residual[i] - unit * unforeseen[i] - of_others) / (1.0 + share * damping[i]);
-      residual[i] = own[i] + unit * unforeseen[i];
+      residual[i] = own[i] = (residual[i] - of_others) / (1.0 + share * damping[i]);
     }
   }
   double implicit_torque(double share) const { return 1.0 / (1.0 + share * rotation); }

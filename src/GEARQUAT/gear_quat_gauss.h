@@ -88,9 +88,8 @@ inline Multipliers scale_factors(Isokinetic mode, const KineticSums &wanted,
 struct Friction {
   double translation[3] = {0.0, 0.0, 0.0};
   double rotation = 0.0;
-  /// Velocity of a motion of all bodies that does not decay, and the difference of its acceleration
-  /// by the present forces from the acceleration in the predicted rows.
-  double common[3] = {0.0, 0.0, 0.0}, unforeseen[3] = {0.0, 0.0, 0.0};
+  /// Velocity of a motion of all bodies that does not decay.
+  double common[3] = {0.0, 0.0, 0.0};
   bool implicit = false;    ///< residuals are solved for the friction that they change
 
   Friction() = default;
@@ -109,15 +108,11 @@ struct Friction {
 
   // A residual r changes a velocity by `share` * r, and thus the friction.  The functions turn
   // explicit residuals into implicit residuals, for a rotation component by component.  share: with
-  // the units of a time.  unit: the residual of a unit acceleration.  The common motion has no
-  // friction, so its residual is the explicit one.
+  // the units of a time.
 
-  void solve(double share, double unit, double *residual) const
+  void solve(double share, double *residual) const
   {
-    for (int i = 0; i < 3; ++i) {
-      const double damped = share * translation[i];
-      residual[i] = (residual[i] + damped * unit * unforeseen[i]) / (1.0 + damped);
-    }
+    for (int i = 0; i < 3; ++i) residual[i] /= 1.0 + share * translation[i];
   }
   double implicit_torque(double share) const { return 1.0 / (1.0 + share * rotation); }
 };

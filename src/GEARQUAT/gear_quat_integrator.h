@@ -46,7 +46,7 @@ struct Undamped {
 
   double force(int, double met, const double *, double) const { return met; }
   double torque(double met, double) const { return met; }
-  void solve(double, double, double *) const {}
+  void solve(double, double *) const {}
   double implicit_torque(double) const { return 1.0; }
 };
 
@@ -156,15 +156,6 @@ class Integrator : public Kinematics {
       pass(history, body, load, friction, rows, pending);
     });
     pending.begun = true;
-  }
-
-  /// The force in the predicted rows; h times its error is the residual of a momentum.
-  void force_of_rows(const RigidBody &body, const double *rows, double *force) const
-  {
-    const double *row = scheme.first() ? rows + scheme.width() + Scheme::MOMENTUM
-                                       : rows + 2 * scheme.width() + Scheme::POSITION;
-    const double unit = scheme.first() ? per_h : 2.0 * body.mass * per_h * per_h;
-    for (int i = 0; i < 3; ++i) force[i] = unit * row[i];
   }
 
   /// The velocities after the passes so far.
@@ -344,7 +335,7 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i)
       target[i] =
           h * damper.force(i, load.force[i], before, body.mass) - rates[Scheme::MOMENTUM + i];
-    if (damper.implicit) damper.solve(h * corrector.c[0], h * body.mass, target);
+    if (damper.implicit) damper.solve(h * corrector.c[0], target);
     feed_back<3>(history, corrector.c, rows, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
@@ -564,7 +555,7 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i)
       damped.force[i] = friction.force(i, load.force[i], momentum, body.mass);
     position_residual(body, damped, rows, total);
-    if (friction.implicit) friction.solve(0.5 * h * corrector.c[1], 0.5 * h * h, total);
+    if (friction.implicit) friction.solve(0.5 * h * corrector.c[1], total);
   }
 
   /// Computes only residuals: rows stay predicted until finish_passes().

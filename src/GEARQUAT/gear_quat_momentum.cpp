@@ -22,9 +22,9 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-// exact sums represent terms up to 2^20 units: forces of overlaps, and fast common motion
+// exact sums represent terms up to 2^20 units, also of a fast common motion
 
-static constexpr double LARGE_FORCES = 1073741824.0, LARGE_MOMENTA = 1024.0;    // 2^30, 2^10
+static constexpr double LARGE_MOMENTA = 1024.0;    // 2^10
 
 /* ---------------------------------------------------------------------- */
 
@@ -87,43 +87,24 @@ void TotalMomentum::weigh(int stated_freedoms, bool bodies_come)
   if (stated) subtracted = stated_freedoms;
 }
 
-void TotalMomentum::begin_sums(double kt)
+void TotalMomentum::measure(double kt)
 {
-  for (auto &sum : differences) sum = ExactSum();
   const double thermal = std::sqrt(kt * std::max({mass[0], mass[1], mass[2]}));
-  unit_momentum = LARGE_MOMENTA * ExactSum::scale_of(thermal);
-  unit_force = LARGE_FORCES * ExactSum::scale_of(thermal / period);
-}
-
-void TotalMomentum::add_predicted(int ibody, const double *of_rows)
-{
-  for (int k = 0; k < 3; ++k)
-    if (constant[k]) differences[k].add(bodies.load_of(ibody).force[k] - of_rows[k], unit_force);
-}
-
-void TotalMomentum::add_up(bigint *limbs) const
-{
+  const double unit = LARGE_MOMENTA * ExactSum::scale_of(thermal);
+  bigint here[3 * ExactSum::LIMBS];
   for (int k = 0; k < 3; ++k) {
     ExactSum sum;
     for (int ibody = 0; constant[k] && ibody < bodies.nowned(); ++ibody)
       if (belongs(ibody, k))
-        sum.add(bodies.rigid_of(ibody).mass * bodies.state_of(ibody).velocity[k], unit_momentum);
-    limbs = std::copy_n(sum.limbs, ExactSum::LIMBS, limbs);
-    limbs = std::copy_n(differences[k].limbs, ExactSum::LIMBS, limbs);
+        sum.add(bodies.rigid_of(ibody).mass * bodies.state_of(ibody).velocity[k], unit);
+    std::copy_n(sum.limbs, ExactSum::LIMBS, here + ExactSum::LIMBS * k);
   }
-}
-
-void TotalMomentum::take(const bigint *limbs)
-{
+  const auto all = over_ranks(MPI_SUM, here, world);
   for (int k = 0; k < 3; ++k) {
-    ExactSum sums[2];
-    for (ExactSum &sum : sums) {
-      std::copy_n(limbs, ExactSum::LIMBS, sum.limbs);
-      limbs += ExactSum::LIMBS;
-    }
-    momentum[k] = sums[0].value(unit_momentum);
+    ExactSum sum;
+    std::copy_n(all.begin() + ExactSum::LIMBS * k, ExactSum::LIMBS, sum.limbs);
+    momentum[k] = sum.value(unit);
     common[k] = constant[k] ? momentum[k] / mass[k] : 0.0;
-    unforeseen[k] = constant[k] ? sums[1].value(unit_force) / mass[k] : 0.0;
   }
 }
 

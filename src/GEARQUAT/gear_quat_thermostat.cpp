@@ -44,7 +44,7 @@ Thermostat::Thermostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Thermo
                                        : words.separate ? 2
                                                         : 1,
                                    Chain(words.length)),
-    total(lmp, fix, bodies, words.damp)
+    total(lmp, fix, bodies)
 {
   set_scheme(scheme);
 }
@@ -122,15 +122,12 @@ void Thermostat::add_kinetic(int ibody, const double *velocity, const double *om
     sums[ROTATION].add(2.0 * rotational_energy(rigid, omega_body), unit);
 }
 
-void Thermostat::sum_kinetic(const Sums &sums, bool of_states)
+void Thermostat::sum_kinetic(const Sums &sums)
 {
-  constexpr int OWN = 2 * ExactSum::LIMBS;
-  bigint limbs[OWN + TotalMomentum::LIMBS] = {};
+  bigint limbs[2 * ExactSum::LIMBS];
   for (int part = 0; part < 2; ++part)
     std::copy_n(sums[part].limbs, ExactSum::LIMBS, limbs + ExactSum::LIMBS * part);
-  if (of_states) total.add_up(limbs + OWN);
   const auto all = over_ranks(MPI_SUM, limbs, world);
-  if (of_states) total.take(all.data() + OWN);
   for (int part = 0; part < 2; ++part) {
     ExactSum sum;
     std::copy_n(all.begin() + ExactSum::LIMBS * part, ExactSum::LIMBS, sum.limbs);
@@ -145,12 +142,12 @@ void Thermostat::sum_present()
 {
   Sums sums;
   unit = scale();
-  total.begin_sums(line.kt);
+  total.measure(line.kt);
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const BodyState &s = bodies.state_of(ibody);
     add_kinetic(ibody, s.velocity, s.omega_body, sums);
   }
-  sum_kinetic(sums, true);
+  sum_kinetic(sums);
 }
 
 void Thermostat::note_friction()
@@ -163,7 +160,7 @@ void Thermostat::share_friction()
 {
   of_all = Multipliers{friction[TRANSLATION], friction[words.separate ? ROTATION : TRANSLATION]};
   of_all.implicit = strong;
-  total.move_along(of_all);
+  std::copy_n(total.velocity(), 3, of_all.common);
 }
 
 void Thermostat::measure()
@@ -183,27 +180,22 @@ void Thermostat::begin_passes(const Integrator &integrator)
   same_bodies = changes == bodies.changes();
   line = line_of_step(update->ntimestep);
   unit = scale();
-  total.begin_sums(line.kt);
+  total.measure(line.kt);
   strong = std::fabs(integrator.step()) * strongest_friction() > STRONG;
   here[TRANSLATION] = here[ROTATION] = ExactSum();
 }
 
-void Thermostat::add_prediction(const Integrator &integrator, int ibody,
-                                const Integrator::Pending &)
+void Thermostat::add_prediction(const Integrator &, int ibody, const Integrator::Pending &)
 {
   const BodyState &s = bodies.state_of(ibody);
   add_kinetic(ibody, s.velocity, s.omega_body, here);
-  if (!strong) return;
-  double force_of_rows[3];
-  integrator.force_of_rows(bodies.rigid_of(ibody), bodies.history(ibody), force_of_rows);
-  total.add_predicted(ibody, force_of_rows);
 }
 
-void Thermostat::find_friction(const Integrator &integrator, int pass)
+void Thermostat::find_friction(const Integrator &integrator, int /*pass*/)
 {
   const int values = integrator.values();
   const double h = integrator.step();
-  sum_kinetic(here, pass == 0);
+  sum_kinetic(here);
   for (size_t c = 0; c < chains.size(); ++c)
     advance(c, same_bodies ? twice_of(c) : chains[c].foretold(h, values), h, values);
   note_friction();

@@ -140,8 +140,7 @@ class Thermostat : public Coupling {
   void refuse_nothing() const;
   using Sums = ExactSum[2];
   void add_kinetic(int ibody, const double *velocity, const double *omega_body, Sums &sums) const;
-  /// of_states: with the total momentum of the states.
-  void sum_kinetic(const Sums &sums, bool of_states);
+  void sum_kinetic(const Sums &sums);
   double scale() const;
   void sum_present();
   void note_friction();

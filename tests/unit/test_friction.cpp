@@ -36,6 +36,9 @@ double remains(const Scheme &scheme, double friction)
 TEST(Friction, AFreeBodyComesToRest)
 {
   for (const Formulation formulation : FORMULATIONS)
-    for (int values = formulation == FIRST ? 4 : 5; values <= (formulation == FIRST ? 8 : 12); ++values)
-      EXPECT_LT(remains(scheme_of(formulation, values, 2), 0.1), 1.0e-3) << formulation << values;
+    for (int values = formulation == FIRST ? 4 : 5; values <= (formulation == FIRST ? 8 : 12);
+         ++values) {
+      const Scheme scheme = scheme_of(formulation, values, 2);
+      EXPECT_LT(remains(scheme, 0.1), 1.0e-3) << scheme;
+    }
 }
