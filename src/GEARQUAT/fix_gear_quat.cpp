@@ -17,12 +17,14 @@
 #include "gear_quat_report.h"
 #include "gear_quat_scene.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "error.h"
 #include "force.h"
 #include "group.h"
 #include "input.h"
 #include "modify.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cstring>
@@ -350,6 +352,21 @@ void FixGearQuat::end_minimization()
 /* ----------------------------------------------------------------------
    r-RESPA with one step for all levels: forces are summed over the levels
 ------------------------------------------------------------------------- */
+
+void FixGearQuat::initial_integrate(int vflag)
+{
+  begin_step(vflag, atom->f, atom->torque);
+}
+
+void FixGearQuat::final_integrate()
+{
+  end_step(atom->f, atom->torque);
+}
+
+bool FixGearQuat::is_minimized() const
+{
+  return update->whichflag == 2;
+}
 
 void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
 {

@@ -30,9 +30,6 @@ FixStyle(gear/quat,FixGearQuat);
 #include "gear_quat_step.h"
 #include "gear_quat_template.h"
 
-#include "atom.h"
-#include "update.h"
-
 #include <cmath>
 #include <vector>
 
@@ -50,8 +47,8 @@ class FixGearQuat : public Fix {
   void setup(int) override;
   void pre_exchange() override;
   void pre_neighbor() override;
-  void initial_integrate(int vflag) override { begin_step(vflag, atom->f, atom->torque); }
-  void final_integrate() override { end_step(atom->f, atom->torque); }
+  void initial_integrate(int) override;
+  void final_integrate() override;
   void initial_integrate_respa(int, int, int) override;
   void final_integrate_respa(int, int) override;
   void end_of_step() override { step.choose_next(); }    ///< with keyword tolerance only
@@ -139,7 +136,7 @@ class FixGearQuat : public Fix {
   bool min_projected = false;     // forces were projected before a minimization begins
   int min_vflag = 0;              // vflag of the current evaluation in a minimization
 
-  bool is_minimized() const { return update->whichflag == 2; }
+  bool is_minimized() const;
   void create_bodies();
   void update_bodies();
   void resume();

@@ -155,8 +155,7 @@ void DrivenBox::follow()
 /// call, also if fix deform has flipped the box.  images: of the owner atom, now.
 void DrivenBox::pass_faces(int ibody, const double *images)
 {
-  const double *rates =
-      step.phase == Phase::BEGUN ? domain->h_rate : sites.rates_of_faces().data();
+  const double *rates = step.phase == Phase::BEGUN ? domain->h_rate : sites.rates_of_faces().data();
   double away[2][3], periods[3], velocity[3];
   through(ownership.box().data(), bodies.body_at(ibody).image.data(), away[0]);
   through(domain->h, images, away[1]);

@@ -6,11 +6,11 @@
 #include "gear_quat_scene.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_step.h"
 #include "gear_quat_forces.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_sites.h"
+#include "gear_quat_step.h"
 
 #include "atom.h"
 #include "comm.h"

@@ -6,10 +6,10 @@
 #include "gear_quat_report.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_step.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_scene.h"
+#include "gear_quat_step.h"
 
 #include "atom.h"
 #include "comm.h"
