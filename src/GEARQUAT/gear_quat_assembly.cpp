@@ -28,10 +28,6 @@ static constexpr double NONE = std::numeric_limits<double>::infinity();
 
 static constexpr double ROUNDING = 1.0e-14;
 
-// a body with at most this many sites is small
-
-static constexpr bigint SMALL = 1000;
-
 // the most terms in a sum whose scale bounds each term
 
 static constexpr double MANY = 524288.0;
@@ -40,9 +36,9 @@ static constexpr double MANY = 524288.0;
    passes over the sites
 ------------------------------------------------------------------------- */
 
-static void merge_sums(SiteSum *sums, const SiteSum *others, int n)
+static void merge_sums(ExactSum *sums, const ExactSum *others, int n)
 {
-  for (int k = 0; k < n; ++k) sums[k].merge(others[k]);
+  for (int k = 0; k < n; ++k) sums[k].add(others[k]);
 }
 
 void Assembly::Sizes::merge(const Sizes &other)
@@ -66,7 +62,7 @@ void Assembly::Extremes::merge(const Extremes &other)
     lo[k] = std::min(lo[k], other.lo[k]);
     hi[k] = std::max(hi[k], other.hi[k]);
   }
-  mass.merge(other.mass);
+  mass.add(other.mass);
 }
 
 void Assembly::Moments::merge(const Moments &other)
@@ -124,21 +120,15 @@ void Assembly::find_arm(const double *x, const double *center, double *arm) cons
 
 Assembly::Site Assembly::site_of(int part, int i) const
 {
-  Site site;    // without initialization, for speed
-  site.rank = comm->me;
-  site.local = i;
-  site.tag = atom->tag[i];
-  site.mass = mass_of(i);
+  Site site = {mass_of(i), {}, atom->v[i], i, atom->tag[i]};
   unwrapped(part, i, site.x);
-  std::copy_n(atom->v[i], 3, site.v);
-  if (former) std::copy_n(former->arm[i].begin(), 3, site.former_arm);
-  if (extended) extended->own_momenta(i, site.mass, site.inertia_space, site.momentum_space);
   return site;
 }
 
-bool Assembly::is_small(int part) const
+std::array<double, 3> Assembly::middle(int part) const
 {
-  return sizes[part].natoms <= SMALL;
+  const double *lo = extremes[part].lo, *hi = extremes[part].hi;
+  return {0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), 0.5 * (lo[2] + hi[2])};
 }
 
 /// No site is further away from the middle of the box around the sites.
@@ -147,17 +137,10 @@ double Assembly::radius(int part) const
   return 0.5 * std::sqrt(distance2(extremes[part].lo, extremes[part].hi));
 }
 
-/// The unit of a sum over all sites of a body; bound: of its terms.
+/// The scale of a sum over all sites of a body; bound: of its terms.
 double Assembly::scale_of(int part, double bound) const
 {
-  if (is_small(part)) return 0.0;
   return ExactSum::scale_of(bound * std::max(1.0, (double) sizes[part].natoms / MANY));
-}
-
-/// The unit of a sum whose terms are proportional to the mass.
-double Assembly::unit_of(int part, double bound) const
-{
-  return scale_of(part, sizes[part].mass * bound);
 }
 
 /* ----------------------------------------------------------------------
@@ -174,7 +157,6 @@ Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extend
   for (int k = 0; k < 6; ++k) steepest = std::max(steepest, std::fabs(domain->h_inv[k]));
   certain = 0.25 * (double) IMGMASK / steepest;
   find_sizes();
-  gather_small();
   find_extremes();
   report_faults();
   find_moments();
@@ -235,66 +217,11 @@ void Assembly::find_sizes()
     if (!sizes[part].finite) faulty[NOT_FINITE] = parts.key(part);
 }
 
-/// Sends small bodies as a whole, in the order of atom IDs, to all ranks that have some of their
-/// sites.
-void Assembly::gather_small()
-{
-  const auto by_tag = [this](int i, int j) {
-    return atom->tag[i] < atom->tag[j];
-  };
-  for (int part = 0; part < parts.number(); ++part)
-    if (is_small(part)) parts.sort_atoms(part, by_tag);
-  if (comm->nprocs == 1) return;
-
-  struct Message {
-    tagint key;
-    int rank, part;
-    Site site;
-  };
-  std::vector<Message> messages;
-  std::vector<int> ranks;
-  for (const int part : parts.on_several_ranks()) {
-    if (!is_small(part)) continue;
-    for (const int i : parts.atoms(part)) {
-      messages.push_back({parts.key(part), comm->me, part, site_of(part, i)});
-      ranks.push_back((int) (parts.key(part) % comm->nprocs));
-    }
-  }
-  messages = send_to_ranks(comm, world, std::move(messages), std::move(ranks));
-  std::sort(messages.begin(), messages.end(), [](const Message &a, const Message &b) {
-    return a.key != b.key  ? a.key < b.key
-        : a.rank != b.rank ? a.rank < b.rank
-                           : a.site.tag < b.site.tag;
-  });
-  std::vector<Message> replies;    // all sites to every rank
-  ranks.clear();
-  for (size_t first = 0, last; first < messages.size(); first = last) {
-    for (last = first; last < messages.size() && messages[last].key == messages[first].key;) ++last;
-    for (size_t to = first; to < last; ++to) {
-      if (to > first && messages[to].rank == messages[to - 1].rank) continue;
-      for (size_t i = first; i < last; ++i) {
-        replies.push_back(
-            {messages[to].key, messages[to].rank, messages[to].part, messages[i].site});
-        ranks.push_back(messages[to].rank);
-      }
-    }
-  }
-  for (const auto &reply : send_to_ranks(comm, world, std::move(replies), std::move(ranks)))
-    whole[reply.part].push_back(reply.site);
-  for (auto &one : whole)
-    std::sort(one.second.begin(), one.second.end(), [](const Site &a, const Site &b) {
-      return a.tag < b.tag;
-    });
-  parts.complete([this](int part) {
-    return is_small(part);
-  });
-}
-
 void Assembly::find_extremes()
 {
-  const Extremes none = {{NONE, NONE, NONE}, {-NONE, -NONE, -NONE}, SiteSum()};
+  const Extremes none = {{NONE, NONE, NONE}, {-NONE, -NONE, -NONE}, ExactSum()};
   extremes = over_sites(none, [this](Extremes &all, int part) {
-    const double unit = unit_of(part, 1.0);
+    const double unit = scale_of(part, sizes[part].mass);
     visit(part, [&](const Site &site) {
       for (int k = 0; k < 3; ++k) {
         all.lo[k] = std::min(all.lo[k], site.x[k]);
@@ -306,7 +233,7 @@ void Assembly::find_extremes()
   for (int part = 0; part < parts.number(); ++part) {
     Body &body = made[part].body;
     body.natoms = (tagint) sizes[part].natoms;
-    body.rigid.mass = extremes[part].mass.value(unit_of(part, 1.0));
+    body.rigid.mass = extremes[part].mass.value(scale_of(part, sizes[part].mass));
     if (!body.from_file && !(body.rigid.mass > 0.0)) faulty[MASSLESS] = body.id;
   }
 }
@@ -316,30 +243,24 @@ void Assembly::find_moments()
 {
   const Moments none = {NONE, MAXTAGINT, 0, 0, {}, {}, {}};
   const auto units = [this](int part) {
-    return std::array<double, 2>{unit_of(part, radius(part)), unit_of(part, sizes[part].speed)};
-  };
-  const auto middle = [this](int part) {
-    const double *lo = extremes[part].lo, *hi = extremes[part].hi;
-    return std::array<double, 3>{0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]),
-                                 0.5 * (lo[2] + hi[2])};
-  };
-  const auto origin = [&](int part) {    // of the sums
-    return is_small(part) ? std::array<double, 3>() : middle(part);
+    const double mass = sizes[part].mass;
+    return std::array<double, 2>{scale_of(part, mass * radius(part)),
+                                 scale_of(part, mass * sizes[part].speed)};
   };
   moments = over_sites(none, [&](Moments &all, int part) {
     const auto unit = units(part);
-    const auto center = middle(part), from = origin(part);
+    const auto center = middle(part);
     visit(part, [&](const Site &site) {
       const double d2 = distance2(site.x, center.data());
       if (d2 < all.distance2 || (d2 == all.distance2 && site.tag < all.owner)) {
         all.distance2 = d2;
         all.owner = site.tag;
-        all.rank = site.rank;
+        all.rank = comm->me;
         all.local = site.local;
         std::copy_n(site.x, 3, all.x);
       }
       for (int k = 0; k < 3; ++k) {
-        all.center[k].add(site.mass * (site.x[k] - from[k]), unit[0]);
+        all.center[k].add(site.mass * (site.x[k] - center[k]), unit[0]);
         all.momentum[k].add(site.mass * site.v[k], unit[1]);
       }
     });
@@ -347,7 +268,7 @@ void Assembly::find_moments()
   for (int part = 0; part < parts.number(); ++part) {
     Made &one = made[part];
     const auto unit = units(part);
-    const auto from = origin(part);
+    const auto from = middle(part);
     const double mass = one.body.rigid.mass;
     one.owner = moments[part].owner;
     one.owner_rank = moments[part].rank;
@@ -356,11 +277,8 @@ void Assembly::find_moments()
       one.state.center[k] = from[k] + moments[part].center[k].value(unit[0]) / mass;
       one.state.velocity[k] = moments[part].momentum[k].value(unit[1]) / mass;
     }
-    if (sizes[part].natoms == 1)    // a lone site is at its center, without rounding
-      visit(part, [&](const Site &site) {
-        std::copy_n(site.x, 3, one.state.center);
-        std::copy_n(site.v, 3, one.state.velocity);
-      });
+    if (sizes[part].natoms == 1)    // without rounding
+      std::copy_n(atom->v[parts.atoms(part).first[0]], 3, one.state.velocity);
     if (one.body.from_file) take_given(given.at(one.body.id), part);
   }
 }
@@ -380,28 +298,23 @@ std::vector<Assembly::Momenta> Assembly::find_momenta()
     const MomentaUnits unit = units_of_momenta(part);
     const BodyState &state = made[part].state;
     const bool counts = !made[part].body.from_file;
-    if (counts && extended)
-      visit(part, [&](const Site &site) {
-        for (int k = 0; k < 3; ++k)
-          all.angular_momentum_space[k].add(site.momentum_space[k], unit.momentum);
-        for (int m = 0; m < 6; ++m)
-          all.inertia_space[m].add(site.inertia_space[3 * ROW[m] + COLUMN[m]], unit.inertia);
-      });
     visit(part, [&](const Site &site) {
-      double arm[3], speed[3], spin[3];
+      double arm[3], speed[3], spin[3], own_inertia[9] = {}, own_momentum[3] = {};
       find_arm(site.x, state.center, arm);
-      for (int k = 0; k < 3; ++k)
-        speed[k] = is_small(part) ? site.v[k] : site.v[k] - state.velocity[k];
+      for (int k = 0; k < 3; ++k) speed[k] = site.v[k] - state.velocity[k];
       cross3(arm, speed, spin);
       const double r2 = dot3(arm, arm);
       all.extent2 = std::max(all.extent2, distance2(site.x, moments[part].x));
       all.from_center2 = std::min(all.from_center2, r2);
-      if (!counts || sizes[part].natoms == 1) return;    // a lone point has no rotation
+      if (!counts) return;
+      if (extended) extended->own_momenta(site.local, site.mass, own_inertia, own_momentum);
       for (int k = 0; k < 3; ++k)
-        all.angular_momentum_space[k].add(site.mass * spin[k], unit.momentum);
+        all.angular_momentum_space[k].add(own_momentum[k] + site.mass * spin[k], unit.momentum);
       for (int m = 0; m < 6; ++m) {
         const int k = ROW[m], l = COLUMN[m];
-        all.inertia_space[m].add(site.mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]), unit.inertia);
+        all.inertia_space[m].add(own_inertia[3 * k + l] +
+                                     site.mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]),
+                                 unit.inertia);
       }
     });
   });
@@ -493,20 +406,13 @@ void Assembly::orient_axes()
     for (int k = 0; k < 3; ++k) arm[k] = site.x[k] - made[part].state.center[k];
     to_body(made[part].axes, arm, components);
   };
-  const std::vector<Reach> reach = over_sites(Reach{0.0}, [&](Reach &all, int part) {
-    visit(part, [&](const Site &site) {
-      double x[3];
-      along(part, site, x);
-      for (const double one : x) all.largest = std::max(all.largest, std::fabs(one));
-    });
-  });
   const Sides none = {{-1.0, -1.0, -1.0}, {MAXTAGINT, MAXTAGINT, MAXTAGINT}, {}};
   const std::vector<Sides> sides = over_sites(none, [&](Sides &all, int part) {
     visit(part, [&](const Site &site) {
       Sides one = none;
       along(part, site, one.side);
       for (int k = 0; k < 3; ++k) {
-        if (std::fabs(one.side[k]) < ON_AXIS * reach[part].largest) continue;
+        if (std::fabs(one.side[k]) < ON_AXIS * radius(part)) continue;
         one.mass[k] = site.mass;
         one.tag[k] = site.tag;
       }
@@ -536,13 +442,13 @@ void Assembly::direct(double *axes, const Sides &sides)
 /// The axes of symmetric bodies are arbitrary: a body that has not turned keeps the former ones.
 void Assembly::keep_axes()
 {
-  const std::vector<Reach> moved = over_sites(Reach{0.0}, [this](Reach &all, int part) {
+  const std::vector<Largest> moved = over_sites(Largest{0.0}, [this](Largest &all, int part) {
     visit(part, [&](const Site &site) {
       double arm[3], arm_body[3];
       find_arm(site.x, made[part].state.center, arm);
       to_body(former->axes[parts.atoms(part).first[0]].data(), arm, arm_body);
-      const double off = std::sqrt(distance2(arm_body, site.former_arm));
-      all.largest = std::max(all.largest, off);
+      const double off = std::sqrt(distance2(arm_body, former->arm[site.local].data()));
+      all.length = std::max(all.length, off);
     });
   });
   const double box = domain->xprd + domain->yprd + domain->zprd;
@@ -553,7 +459,7 @@ void Assembly::keep_axes()
     const double same = SAME * largest;
     const bool symmetric = std::fabs(moments[0] - moments[1]) < same ||
         std::fabs(moments[1] - moments[2]) < same || std::fabs(moments[2] - moments[0]) < same;
-    if (!symmetric || moved[part].largest > UNMOVED * (box + length(one.state.center))) continue;
+    if (!symmetric || moved[part].length > UNMOVED * (box + length(one.state.center))) continue;
     const double *axes = former->axes[parts.atoms(part).first[0]].data();
     double tensor[9] = {}, now[3];
     add_tensor(moments, one.axes, tensor);

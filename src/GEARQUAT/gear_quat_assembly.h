@@ -9,8 +9,7 @@
    its sites.  Every rank sums over the sites that it owns, and a few numbers per body and rank are
    sent (gear_quat_ranks.h), so that memory and messages do not grow with the sites of a body.  The
    sums do not depend on the order of the sites (gear_quat_exact_sum.h), so bodies are the same, to
-   the last bit, on any number of ranks.  For a small body the sums are plain sums in the order of
-   the atom IDs: every rank that has one of its sites receives the other sites. */
+   the last bit, on any number of ranks. */
 
 #ifndef LMP_GEAR_QUAT_ASSEMBLY_H
 #define LMP_GEAR_QUAT_ASSEMBLY_H
@@ -25,26 +24,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
 
 class Extended;
-
-/// A sum over the sites of a body; unit: the scale of an exact sum, 0 for a plain sum, which is not
-/// merged.
-struct SiteSum {
-  ExactSum exact;
-  double plain = 0.0;
-
-  void add(double term, double unit)
-  {
-    unit > 0.0 ? exact.add(term, unit) : (void) (plain += term);
-  }
-  void merge(const SiteSum &other) { exact.add(other.exact); }
-  double value(double unit) const { return unit > 0.0 ? exact.value(unit) : plain; }
-};
 
 /// Poses of owned atoms in bodies that are made again.
 struct Former {
@@ -102,14 +86,12 @@ class Assembly : protected Pointers {
   std::vector<tagint> found;     ///< given bodies whose owner atoms are here
 
   struct Site {
-    int rank, local;
-    tagint tag;
     double mass;
-    double x[3], v[3];                             ///< unwrapped
-    double former_arm[3];                          ///< along the axes of the former body
-    double inertia_space[9], momentum_space[3];    ///< of the site about its own center
+    double x[3];    ///< unwrapped
+    const double *v;
+    int local;
+    tagint tag;
   };
-  std::map<int, std::vector<Site>> whole;    ///< small bodies on several ranks: part -> all sites
 
   // Results of one pass over the sites, for each part; merged, for the whole body.  A pass needs
   // the results of earlier passes.
@@ -125,7 +107,7 @@ class Assembly : protected Pointers {
   };
   struct Extremes {
     double lo[3], hi[3];    ///< box around the sites
-    SiteSum mass;
+    ExactSum mass;
     void merge(const Extremes &other);
   };
   struct Moments {    ///< about the middle of the box around the sites
@@ -133,18 +115,18 @@ class Assembly : protected Pointers {
     tagint owner;    ///< atom ID of the site nearest to the middle
     int rank, local;
     double x[3];    ///< of this site
-    SiteSum center[3], momentum[3];
+    ExactSum center[3], momentum[3];
     void merge(const Moments &other);
   };
   struct Momenta {          ///< about the center of mass
     double extent2;         ///< largest distance of a site from the owner atom, squared
     double from_center2;    ///< smallest one from the center of mass
-    SiteSum inertia_space[6], angular_momentum_space[3];    ///< xx, xy, xz, yy, yz, zz
+    ExactSum inertia_space[6], angular_momentum_space[3];    ///< xx, xy, xz, yy, yz, zz
     void merge(const Momenta &other);
   };
-  struct Reach {
-    double largest;    ///< distance along a principal axis from the center of mass
-    void merge(const Reach &other) { largest = std::max(largest, other.largest); }
+  struct Largest {
+    double length;
+    void merge(const Largest &other) { length = std::max(length, other.length); }
   };
   struct Sides {    ///< of the heaviest site outside of the plane across each axis
     double mass[3];
@@ -163,19 +145,14 @@ class Assembly : protected Pointers {
   void unwrapped(int part, int i, double *x) const;
   void find_arm(const double *x, const double *center, double *arm) const;
   Site site_of(int part, int i) const;
-  /// act: of every site of a part, or of the whole body if that is small.
+  /// act: of every site of a part.
   template <class Act> void visit(int part, Act act) const
   {
-    const auto found = whole.find(part);
-    if (found != whole.end())
-      for (const Site &site : found->second) act(site);
-    else
-      for (const int i : parts.atoms(part)) act(site_of(part, i));
+    for (const int i : parts.atoms(part)) act(site_of(part, i));
   }
-  bool is_small(int part) const;
+  std::array<double, 3> middle(int part) const;
   double radius(int part) const;
   double scale_of(int part, double bound) const;
-  double unit_of(int part, double bound) const;
   struct MomentaUnits {
     double inertia, momentum;
   };
@@ -190,7 +167,6 @@ class Assembly : protected Pointers {
   }
 
   void find_sizes();
-  void gather_small();
   void find_extremes();
   void find_moments();
   std::vector<Momenta> find_momenta();

@@ -198,19 +198,6 @@ class Parts {
   /// The owned atoms of a part, by their local indices.
   Atoms atoms(int part) const { return {&atom[start[part]], &atom[start[part + 1] - 1] + 1}; }
 
-  /// Sorts the atoms of a part.
-  template <class Before> void sort_atoms(int part, Before before)
-  {
-    std::sort(&atom[start[part]], &atom[start[part + 1] - 1] + 1, before);
-  }
-  /// Parts of bodies that have atoms on other ranks too.
-  const std::vector<int> &on_several_ranks() const { return shared; }
-  /// From here on merge() omits the parts for which `whole` is true, consistently on all ranks.
-  template <class Whole> void complete(Whole whole)
-  {
-    shared.erase(std::remove_if(shared.begin(), shared.end(), whole), shared.end());
-  }
-
   /// items: one for each part, with a function merge() that adds the item of another rank.  After
   /// the call every part has the item of the whole body.  Items are merged in the order of the
   /// ranks and sent as bytes.  Collective.

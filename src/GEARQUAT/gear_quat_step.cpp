@@ -215,23 +215,23 @@ void Step::start(double **f, double **torque)
     one->ownership.spread_states();
     one->gather(f, torque);
   }
-  const Fix *first = fleet.members.front()->fix;
-  for (Step *one : fleet.members)
-    if (one->tolerance && !one->started)
-      one->tolerance->bound_first_step(one->longest_step(), first);
+  // with keyword tolerance first, since it sets the step of all
+  for (Step *one : fleet.members) {
+    if (!one->tolerance) continue;
+    one->started = !one->has_to_start(f);
+    if (!one->started) one->tolerance->begin(one->longest_step(), fleet.members.front()->fix);
+  }
   for (Step *one : fleet.members) {
     one->phase = Phase::READY;
-    const bool needs = one->has_to_start(f);
+    const bool needs = one->tolerance ? !one->started : one->has_to_start(f);
+    if (needs) one->check_loads(f);
     if (one->bootstraps()) {
       full.push_back(one);
       needed.push_back(needs);
     } else if (needs) {
-      if (one->tolerance) one->tolerance->begin();
       one->starter(true).seed_local(one->tolerance ? 3 : 2, one->length());
       one->note_start();
-      if (!one->tolerance) continue;
-      one->tolerance->shorten_first_step(first);
-      one->adopt_length();
+      if (one->tolerance) one->tolerance->warn_of_rounding();
     }
   }
   start_together(full, needed);
@@ -349,10 +349,6 @@ bool Step::has_to_start(double **f)
     utils::logmesg(lmp, "Fix gear/quat {}: {}; histories are rebuilt\n", fix->id, reason);
   const bool needs = !started || reason;
   movers = present_movers();
-  if (needs) {
-    find_limits(length());
-    blowup.check_loads(length(), f);
-  }
   for (int ibody = 0; ibody < bodies.nmoved() && !needs && scheme().is_verlet(); ++ibody) {
     project_norm(bodies.change_state(ibody).q);
     seed_body(bodies, ibody, scaled_of(bodies, coupling.get(), ibody), acting(ibody), scheme(),
@@ -815,6 +811,13 @@ void Step::accept(double **f)
   }
   if (!bodies.fresh.empty()) bodies.take_in_fresh();
   if (coupling) coupling->follow_changes(h);
+}
+
+/// Ends the run if the present loads would make a body unstable in the next step.
+void Step::check_loads(double **f)
+{
+  find_limits(length());
+  blowup.check_loads(length(), f);
 }
 
 /// A shrink-wrapped box sets no limits.

@@ -228,6 +228,7 @@ class Step : protected Pointers {
   void accept(double **f);
   void examine(int ibody, double **f);
   void examine_all(double **f);
+  void check_loads(double **f);
   void find_limits(double h);
 
   // the length of the step

@@ -109,12 +109,28 @@ void Tolerance::refuse_scene() const
    start
 ------------------------------------------------------------------------- */
 
-void Tolerance::begin()
+void Tolerance::begin(double permitted, const Fix *first)
 {
   record = Record();
   growing = Growth();
   remembered.begin();
   present.rows = remembered.values();
+  const double given = update->dt, speed = over_ranks(MPI_MAX, largest_speed(), world);
+  double size = std::min({std::fabs(given), permitted, farthest_step(speed), first_step()});
+  if (control.longest > 0.0) size = std::min(size, control.longest);
+  size = std::max(size, control.shortest);
+  size = std::fabs(even(std::copysign(size, given), time_step.beginning()));
+  if (size == std::fabs(given)) return;
+  if (const Fix *other = integrated_before(first)) {
+    if (size < std::fabs(given) && comm->me == 0)
+      error->warning(FLERR,
+                     "Fix gear/quat tolerance: the first step of {:.3g} should be no longer than "
+                     "{:.3g}; define fix {} ({}) after this fix, or use that time step",
+                     std::fabs(given), size, other->id, other->style);
+    return;
+  }
+  time_step.change_begun(std::copysign(size, given));
+  tell_of_first_step(given);
 }
 
 /// Rank 0 warns if no step is short enough for eps.  Collective.
@@ -152,38 +168,6 @@ double Tolerance::first_step() const
     if (jerk > 0.0) least = std::min(least, control.first_step(jerk, speed, body.rigid.mass));
   }
   return over_ranks(MPI_MIN, least, world);
-}
-
-void Tolerance::bound_first_step(double permitted, const Fix *first)
-{
-  const double given = std::fabs(update->dt);
-  double size =
-      std::min({given, permitted, farthest_step(over_ranks(MPI_MAX, largest_speed(), world))});
-  if (control.longest > 0.0) size = std::min(size, control.longest);
-  size = std::max(size, control.shortest);
-  if (size != given && !integrated_before(first))
-    time_step.change_begun(std::copysign(size, update->dt));
-}
-
-void Tolerance::shorten_first_step(const Fix *first)
-{
-  warn_of_rounding();
-  const double speed = over_ranks(MPI_MAX, largest_speed(), world);
-  double size = std::min({std::fabs(update->dt), first_step(), farthest_step(speed)});
-  size = std::max(control.shortest, size);
-  size = std::fabs(even(std::copysign(size, update->dt), time_step.beginning()));
-  if (size >= std::fabs(update->dt)) return;
-  if (const Fix *other = integrated_before(first)) {
-    if (comm->me == 0)
-      error->warning(FLERR,
-                     "Fix gear/quat tolerance: the first step of {:.3g} should be no longer than "
-                     "{:.3g}; define fix {} ({}) after this fix, or use that time step",
-                     std::fabs(update->dt), size, other->id, other->style);
-    return;
-  }
-  const double instead = update->dt;
-  time_step.change_begun(std::copysign(size, instead));
-  tell_of_first_step(instead);
 }
 
 /// Reports the first step; instead: the length in LAMMPS.

@@ -6,7 +6,7 @@
 /* Keyword tolerance inside LAMMPS: the largest errors of all bodies on all ranks, the control
    law of gear_quat_remembered_loads.h, and the outputs that depend on times.
 
-   When histories start: bound_first_step(), begin() and shorten_first_step().
+   When histories start: begin() and warn_of_rounding().
    In every step: begin_step(); prepare() before the prediction; correct() for every body, or
    note_prediction() and note_correction() around the correction by a coupling; and accepts().  If a
    step is rejected, the caller restores the histories, calls shorten_loads() and shorten_step(), and
@@ -103,14 +103,12 @@ class Tolerance : protected Pointers {
   const Scheme &scheme() const { return present; }
   /// An integrator with the coefficients of the last prepare().
   Integrator integrator() const { return {present, time_step.length(), remembered.coefficients()}; }
-  /// Histories will be seeded with the present loads.
-  void begin();
-  /// Before histories are made: limits the first step to dtmin, dtmax, the motion allowed, and
-  /// `permitted`.  Collective.
-  /// first: the first fix gear/quat, which starts the histories of all before it begins the step.
-  void bound_first_step(double permitted, const Fix *first);
-  /// Shortens the first step if its error would be too large.  Collective.
-  void shorten_first_step(const Fix *first);
+  /// Before histories are made of the present loads: shortens the first step to dtmax, the motion
+  /// allowed, `permitted`, and the step whose error would be the tolerance.  first: the first fix
+  /// gear/quat, which starts the histories of all before it begins the step.  Collective.
+  void begin(double permitted, const Fix *first);
+  /// For new histories: rank 0 warns if no step is short enough for eps.  Collective.
+  void warn_of_rounding() const;
 
   /// Begins a step, with the histories of the last step.  After a run with `pre no` the length of
   /// the histories is restored; ends the run if other atoms have moved already.  Collective.
@@ -183,7 +181,6 @@ class Tolerance : protected Pointers {
   double step_error() const { return control.error(errors); }
   void include(StepErrors one);
   StepErrors rounding(const Integrator &integrator, int ibody, const Load &load) const;
-  void warn_of_rounding() const;
   double first_step() const;
   void begin_run();
   std::string reason_not_to_repeat() const;
