@@ -337,7 +337,6 @@ void Assembly::take_given(const GivenBody &given_body, int part)
 }
 
 static constexpr double ROUNDED = 1.0e-3;     // of a moment written with few digits
-static constexpr double HALF = 0.5;           // of a period
 static constexpr double SAME = 1.0e-9;        // of moments, relative
 static constexpr double UNMOVED = 1.0e-11;    // of coordinates, rounding
 
@@ -541,103 +540,52 @@ void Assembly::report_missing() const
 
 namespace {
 
-/// The sites of a body along each direction, in intervals of half a period, or longer if the body
-/// extends over many periods: two sites in one interval have no gap of more than half a period
-/// between them.
+/// The sites of a body along the three periods, from one of its sites: bits of intervals of a
+/// period, modulo two periods.
 struct Clumps {
-  static constexpr int INTERVALS = 16;
-  double lo[3][INTERVALS], hi[3][INTERVALS];
+  static constexpr int PERIOD = 32, INTERVALS = 2 * PERIOD;
+  uint64_t occupied[3] = {};
 
-  Clumps()
+  void add(int direction, double periods)
   {
-    for (int k = 0; k < 3; ++k) {
-      std::fill_n(lo[k], INTERVALS, NONE);
-      std::fill_n(hi[k], INTERVALS, -NONE);
-    }
+    const auto n = (int64_t) std::floor(periods * PERIOD);
+    occupied[direction] |= (uint64_t) 1 << (n & (INTERVALS - 1));
   }
   void merge(const Clumps &other)
   {
-    for (int k = 0; k < 3; ++k)
-      for (int n = 0; n < INTERVALS; ++n) {
-        lo[k][n] = std::min(lo[k][n], other.lo[k][n]);
-        hi[k][n] = std::max(hi[k][n], other.hi[k][n]);
-      }
+    for (int k = 0; k < 3; ++k) occupied[k] |= other.occupied[k];
   }
-  void add(int direction, double interval, double along)
+  /// True if one gap besides the outside of the body is longer than half a period.
+  bool have_gap(int direction) const
   {
-    const int n = std::min((int) (along / interval), INTERVALS - 1);
-    lo[direction][n] = std::min(lo[direction][n], along);
-    hi[direction][n] = std::max(hi[direction][n], along);
-  }
-  bool have_gap() const
-  {
-    for (int k = 0; k < 3; ++k) {
-      double last = NONE;
-      for (int n = 0; n < INTERVALS; ++n) {
-        if (lo[k][n] > hi[k][n]) continue;    // no site
-        if (lo[k][n] - last > HALF) return true;
-        last = hi[k][n];
-      }
+    int gaps = 0, gap = 0;
+    for (int n = 1; n <= INTERVALS; ++n) {    // the first interval is occupied
+      const bool is_occupied = occupied[direction] >> (n % INTERVALS) & 1;
+      gaps += is_occupied && gap > PERIOD / 2;
+      gap = is_occupied ? 0 : gap + 1;
     }
-    return false;
+    return gaps > 1;
   }
 };
 
 }    // namespace
 
-/// Bounds of the coordinates of a body, in units of the periods.
-std::array<double, 2> Assembly::bounds(int part, int direction) const
-{
-  std::array<double, 2> found = {NONE, -NONE};
-  for (int corner = 0; corner < 8; ++corner) {
-    double x[3], periods[3];
-    for (int k = 0; k < 3; ++k) x[k] = (corner >> k & 1 ? extremes[part].hi : extremes[part].lo)[k];
-    to_periods(domain, x, periods);
-    found[0] = std::min(found[0], periods[direction]);
-    found[1] = std::max(found[1], periods[direction]);
-  }
-  return found;
-}
-
 /// Two plates may be one body, but two halves of a molecule at opposite faces of the box may not.
 void Assembly::warn_of_clumps() const
 {
-  std::vector<tagint> wide(atom->nlocal, 0);    // bodies that may have a gap
-  for (int part = 0; part < parts.number(); ++part)
-    for (int k = 0; k < 3; ++k) {
-      const auto bound = bounds(part, k);
-      if (k >= domain->dimension || !domain->periodicity[k] || !(bound[1] - bound[0] > HALF))
-        continue;
-      for (const int i : parts.atoms(part)) wide[i] = parts.key(part);
-    }
-  const int here = std::any_of(wide.begin(), wide.end(), [](tagint id) {
-    return id != 0;
+  const std::vector<Clumps> clumps = over_sites(Clumps(), [this](Clumps &all, int part) {
+    double first[3], periods[3];
+    to_periods(domain, sizes[part].first_x, first);
+    visit(part, [&](const Site &site) {
+      to_periods(domain, site.x, periods);
+      for (int k = 0; k < domain->dimension; ++k)
+        if (domain->periodicity[k]) all.add(k, periods[k] - first[k]);
+    });
   });
-  if (!over_ranks(MPI_MAX, here, world)) return;
-
-  const Parts suspects(comm, world, wide.data(), atom->nlocal);
-  std::vector<Clumps> clumps(suspects.number());
-  for (int suspect = 0; suspect < suspects.number(); ++suspect) {
-    const int part = parts.find(suspects.key(suspect));
-    double lo[3], interval[3];
-    for (int k = 0; k < 3; ++k) {
-      const auto bound = bounds(part, k);
-      lo[k] = bound[0];
-      interval[k] = std::max(HALF, (bound[1] - bound[0]) / Clumps::INTERVALS);
-    }
-    for (const int i : parts.atoms(part)) {
-      double x[3], periods[3];
-      unwrapped(part, i, x);
-      to_periods(domain, x, periods);
-      for (int k = 0; k < 3; ++k)
-        if (domain->periodicity[k])
-          clumps[suspect].add(k, interval[k], std::max(0.0, periods[k] - lo[k]));
-    }
-  }
-  suspects.merge(clumps);
   tagint in_clumps = 0;
-  for (int suspect = 0; suspect < suspects.number(); ++suspect)
-    if (clumps[suspect].have_gap()) in_clumps = suspects.key(suspect);
+  for (int part = 0; part < parts.number(); ++part)
+    for (int k = 0; k < 3; ++k)
+      if (clumps[part].have_gap(k)) in_clumps = parts.key(part);
   in_clumps = over_ranks(MPI_MAX, in_clumps, world);
   if (in_clumps && comm->me == 0)
     error->warning(FLERR,

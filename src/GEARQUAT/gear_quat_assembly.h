@@ -180,7 +180,6 @@ class Assembly : protected Pointers {
   void check_moments(const Made &one);
   void report_faults();
   void report_missing() const;
-  std::array<double, 2> bounds(int part, int direction) const;
   void warn_of_clumps() const;
 };
 

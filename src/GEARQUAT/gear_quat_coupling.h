@@ -201,12 +201,6 @@ inline Load acting_on(const Bodies &bodies, const Coupling *coupling, int ibody)
   return coupling ? coupling->acting(ibody) : bodies.acting(ibody);
 }
 
-/// The state in the history of a body.
-inline BodyState scaled_of(const Bodies &bodies, const Coupling *coupling, int ibody)
-{
-  return coupling ? coupling->scaled(bodies.state_of(ibody)) : bodies.state_of(ibody);
-}
-
 template <class Law>
 void Coupling::correct_by_passes(Law &law, const Integrator &integrator, int passes)
 {

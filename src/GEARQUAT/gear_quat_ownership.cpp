@@ -213,6 +213,78 @@ void Ownership::follow_atom_ids()
 }
 
 /* ----------------------------------------------------------------------
+   comparison with the atoms
+------------------------------------------------------------------------- */
+
+namespace {
+
+/// The atoms of a body on one rank, or on all; the data of its owner are 0 on other ranks.
+struct AtomsOfBody {
+  bigint natoms = 0;
+  tagint smallest_id = MAXTAGINT, largest_id = 0;    ///< the user's, of the body
+  bigint in_group = 0;                               ///< atoms in the group of the request
+  bigint own_freedoms = 0;                           ///< rotations of the atoms themselves
+  bigint had = 0, freedoms = 0;    ///< of the owner: atoms when the body was made, its freedoms
+
+  void merge(const AtomsOfBody &other)
+  {
+    natoms += other.natoms;
+    smallest_id = std::min(smallest_id, other.smallest_id);
+    largest_id = std::max(largest_id, other.largest_id);
+    in_group += other.in_group;
+    own_freedoms += other.own_freedoms;
+    had += other.had;
+    freedoms += other.freedoms;
+  }
+};
+
+}    // namespace
+
+Comparison Ownership::count_atoms(int groupbit) const
+{
+  const std::vector<tagint> tags = owner_tags();
+  const Parts parts(comm, world, tags.data(), atom->nlocal);
+  std::vector<AtomsOfBody> counts(parts.number());
+  std::vector<int> owns(parts.number(), 0);
+  for (int part = 0; part < parts.number(); ++part) {
+    AtomsOfBody &count = counts[part];
+    for (const int i : parts.atoms(part)) {
+      ++count.natoms;
+      count.smallest_id = std::min(count.smallest_id, id_of(i));
+      count.largest_id = std::max(count.largest_id, id_of(i));
+      count.in_group += (atom->mask[i] & groupbit) ? 1 : 0;
+      count.own_freedoms += records.freedoms(i);
+      if (owned_by(i) < 0) continue;
+      const Body &mine = bodies.body_at(owned_by(i));
+      count.had = mine.natoms;
+      count.freedoms = mine.rigid.freedoms(domain->dimension);
+      owns[part] = 1;
+    }
+  }
+  parts.merge(counts);
+
+  Comparison found;
+  for (int part = 0; part < parts.number(); ++part) {
+    const AtomsOfBody &body = counts[part];
+    if (body.natoms != body.had || body.smallest_id != body.largest_id) {
+      found.broken = body.smallest_id;
+      found.left = body.natoms;
+      found.had = body.had;
+    }
+    if (!owns[part]) continue;
+    if (body.in_group > 0 && body.in_group < body.natoms) found.divided = body.smallest_id;
+    if (body.in_group == body.natoms)
+      found.removed_freedoms += domain->dimension * body.natoms + body.own_freedoms - body.freedoms;
+  }
+  found.removed_freedoms = over_ranks(MPI_SUM, found.removed_freedoms, world);
+  const tagint broken = over_ranks(MPI_MAX, found.broken, world);
+  bigint here[] = {found.divided, 0, 0};
+  if (found.broken == broken) here[1] = found.left, here[2] = found.had;
+  const auto largest = over_ranks(MPI_MAX, here, world);
+  return {found.removed_freedoms, (tagint) largest[0], broken, largest[1], largest[2]};
+}
+
+/* ----------------------------------------------------------------------
    ownership
 ------------------------------------------------------------------------- */
 

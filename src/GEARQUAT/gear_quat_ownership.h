@@ -110,7 +110,7 @@ class Ownership : protected Pointers {
   void check_whole();
   /// Compares numbers of atoms with their bodies.  Needs no ghost atoms, so it can be called at any
   /// time.  groupbit: the group whose degrees of freedom are requested, 0 for none.
-  /// In gear_quat_compare.cpp.  Collective.
+  /// Collective.
   Comparison count_atoms(int groupbit = 0) const;
   /// The IDs of all bodies, sorted, on all ranks.  Collective.
   std::vector<tagint> all_ids() const;

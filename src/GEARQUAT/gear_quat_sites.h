@@ -57,7 +57,7 @@ class Sites : protected Pointers {
   void advance_densities(double step);
   /// Sets orientations and rates of extended atoms, if only these have changed.
   void place_extended();
-  /// Differences between atoms and their bodies.  In gear_quat_compare.cpp.
+  /// Differences between atoms and their bodies.
   struct Changes {
     bool any;        ///< of masses, positions, velocities or orientations
     tagint moved;    ///< an atom that is not where its body will put it, 0 for none

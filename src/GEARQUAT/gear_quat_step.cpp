@@ -193,8 +193,8 @@ void Step::take_velocities(bigint of_step, bool end)
     if (over_ranks(MPI_MAX, (int) !changed.empty(), world)) coupling->follow_velocities(length());
   }
   for (const int ibody : changed)
-    integrator->set_velocities(bodies.rigid_of(ibody), scaled_of(bodies, coupling.get(), ibody),
-                               acting(ibody), bodies.history(ibody));
+    integrator->set_velocities(bodies.rigid_of(ibody), scaled(ibody), acting(ibody),
+                               bodies.history(ibody));
 }
 
 /* ----------------------------------------------------------------------
@@ -229,7 +229,8 @@ void Step::start(double **f, double **torque)
       full.push_back(one);
       needed.push_back(needs);
     } else if (needs) {
-      one->starter(true).seed_local(one->tolerance ? 3 : 2, one->length());
+      if (one->coupling) one->coupling->refer_to_box(one->length());
+      one->seed_local(one->tolerance ? 3 : 2);
       one->note_start();
       if (one->tolerance) one->tolerance->warn_of_rounding();
     }
@@ -246,12 +247,10 @@ void Step::start_together(const std::vector<Step *> &full, const std::vector<boo
 
   const bool some_go_on = std::count(needed.begin(), needed.end(), false) > 0;
   const bool together = !some_go_on || full[0]->forces_can_be_followed();
-  std::vector<Starter> starters;
+  Start start(full[0]->lmp, full[0]->length());
   for (size_t n = 0; n < full.size(); ++n)
-    if (needed[n] || together) starters.push_back(full[n]->starter(needed[n]));
-  const bool found = Start(full[0]->lmp, starters, full[0]->length()).run();
-  for (size_t n = 0; n < full.size(); ++n)
-    if (needed[n] || (together && found)) full[n]->note_start();
+    if (needed[n] || together) start.add(*full[n], needed[n]);
+  start.run();
 }
 
 /// Returns null if the histories can continue.  Collective.
@@ -351,24 +350,27 @@ bool Step::has_to_start(double **f)
   movers = present_movers();
   for (int ibody = 0; ibody < bodies.nmoved() && !needs && scheme().is_verlet(); ++ibody) {
     project_norm(bodies.change_state(ibody).q);
-    seed_body(bodies, ibody, scaled_of(bodies, coupling.get(), ibody), acting(ibody), scheme(),
-              length(), 3);
+    seed(ibody, 3);
   }
   return needs;
 }
 
-Starter Step::starter(bool needed)
+void Step::seed(int ibody, int terms)
 {
-  if (needed && coupling) coupling->refer_to_box(length());
-  std::function<Scheme(const MotionSums &)> foresee;
-  const auto choose = [this](const MotionSums &here) {
-    return choose_scheme(here);
-  };
-  if (args.automatic_values)
-    foresee = [this](const MotionSums &here) {
-      return scene_of(here).choose(args.scheme).scheme;
-    };
-  return {fix, &bodies, &ownership, &sites, coupling.get(), scheme(), needed, choose, foresee};
+  const RigidBody &rigid = bodies.rigid_of(ibody);
+  auto series = local_series(rigid, scaled(ibody), acting(ibody), length());
+  series.terms = terms;
+  GearQuat::seed(scheme(), rigid, series, length(), length(), bodies.history(ibody));
+}
+
+void Step::seed_local(int terms)
+{
+  choose_scheme(sums_by_loads());
+  if (coupling) {
+    coupling->measure();
+    coupling->seed_local(length(), terms);
+  }
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) seed(ibody, terms);
 }
 
 /// Histories have started.
@@ -503,6 +505,18 @@ bool Step::read(Fields &file)
    the number of values, where the command does not state it
 ------------------------------------------------------------------------- */
 
+/// Estimates of the motion, from loads, of the bodies that this rank owns.
+MotionSums Step::sums_by_loads() const
+{
+  MotionSums here;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    double torque_body[3];
+    to_body(bodies.axes(ibody), bodies.acting(ibody).torque_space, torque_body);
+    here.add(bodies.rigid_of(ibody), bodies.state_of(ibody), torque_body);
+  }
+  return here;
+}
+
 /// Sums over all ranks.
 MotionSums Step::sums_of(const MotionSums &here) const
 {
@@ -598,7 +612,7 @@ void Step::look_at_rates(double edge, bool ahead)
 double Step::edge_by_loads(double by_mean) const
 {
   constexpr bigint MANY = 10;
-  const MotionSums all = sums_of(sums_by_loads(bodies));
+  const MotionSums all = sums_of(sums_by_loads());
   const double edge = by_mean * all.mean_edge(length());
   const bool noise = noise_of_forces(lmp, ownership).noise != Noise::NONE;
   return bodies.number() >= MANY && std::isfinite(edge) && !noise ? edge : 0.0;
@@ -806,8 +820,7 @@ void Step::accept(double **f)
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
     blowup.check_load(ibody, h, f);
-    seed_body(bodies, ibody, scaled_of(bodies, coupling.get(), ibody), acting(ibody), scheme(), h,
-              known);
+    seed(ibody, known);
   }
   if (!bodies.fresh.empty()) bodies.take_in_fresh();
   if (coupling) coupling->follow_changes(h);

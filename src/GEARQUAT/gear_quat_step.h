@@ -148,6 +148,7 @@ class Step : protected Pointers {
   bool velocities_read = true;    ///< by other styles, between begin() and end()
 
  private:
+  friend class Start;
   const Fleet &fleet;
   Bodies &bodies;
   Sites &sites;
@@ -185,6 +186,11 @@ class Step : protected Pointers {
 
   /// The load on a body; with a coupling after its measure().
   Load acting(int ibody) const { return acting_on(bodies, coupling.get(), ibody); }
+  /// The state in the history of a body.
+  BodyState scaled(int ibody) const
+  {
+    return coupling ? coupling->scaled(bodies.state_of(ibody)) : bodies.state_of(ibody);
+  }
 
   // start
 
@@ -194,7 +200,11 @@ class Step : protected Pointers {
   bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP && !tolerance; }
   static void start_together(const std::vector<Step *> &full, const std::vector<bool> &needed);
   bool has_to_start(double **f);
-  Starter starter(bool needed);
+  /// History of one body from its state and the load that acts on it.  terms: 2 for the paper's
+  /// start, in which all derivatives from the second on are zero, or 3 with the load.
+  void seed(int ibody, int terms);
+  /// The same for all bodies.
+  void seed_local(int terms);
   void note_start();
   const char *reason_to_start_anew(double **f);
   bool can_start_anew() const;
@@ -210,7 +220,12 @@ class Step : protected Pointers {
   std::set<std::string> warned;    ///< of these rates
   MotionSums sums_of(const MotionSums &here) const;
   ChoiceOfValues scene_of(const MotionSums &here) const;
+  MotionSums sums_by_loads() const;
   Scheme choose_scheme(const MotionSums &here);
+  Scheme foresee_scheme(const MotionSums &here) const
+  {
+    return scene_of(here).choose(args.scheme).scheme;
+  }
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
   void look_at_rates(double edge, bool ahead);
   double edge_by_loads(double by_mean) const;
