@@ -13,9 +13,10 @@
 
 #include "fix_gear_quat.h"
 
+#include "gear_quat_checks.h"
+#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_report.h"
-#include "gear_quat_scene.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -84,6 +85,8 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   create_bodies();
   if (bodies.number() == 0 && args.mol.empty())
     error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
+  warn_of_gaps(lmp, ownership);
+  warn_of_shapes(lmp, bodies, ownership);
   step.meet_bodies();
   atoms_are_free = over_ranks(MPI_MAX, (int) ownership.had_free_atoms(), world);
   count_rows();
@@ -216,7 +219,7 @@ void FixGearQuat::setup(int vflag)
   bodies.forget_work();    // positions belong to the corrected poses
   tally_virial(vflag, atom->f);
   show_bodies();
-  if (first) warn_of_excluded_images(lmp, this, bodies, ownership, sites);
+  if (first) warn_of_excluded_images(lmp, this, bodies, sites);
   if (first) report_scene(lmp, this, args, fleet, bodies, ownership, sites);
   atoms_are_free = false;
 }

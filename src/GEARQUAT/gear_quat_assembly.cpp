@@ -52,7 +52,6 @@ void Assembly::Sizes::merge(const Sizes &other)
   speed = std::max(speed, other.speed);
   own_inertia = std::max(own_inertia, other.own_inertia);
   own_momentum = std::max(own_momentum, other.own_momentum);
-  types += other.types;
   finite = finite && other.finite;
 }
 
@@ -171,21 +170,11 @@ Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extend
   for (int part = 0; part < parts.number(); ++part) find_rotation(part, momenta[part]);
   report_faults();
   report_missing();
-  warn_of_clumps();
-}
-
-/// Different sums for different numbers of atoms of each type (splitmix64).
-static uint64_t mixed(uint64_t type)
-{
-  uint64_t z = type * 0x9e3779b97f4a7c15ull;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-  return z ^ (z >> 31);
 }
 
 void Assembly::find_sizes()
 {
-  const Sizes none = {0, MAXTAGINT, {}, 0.0, 0.0, 0.0, 0.0, 1, 0};
+  const Sizes none = {0, MAXTAGINT, {}, 0.0, 0.0, 0.0, 0.0, 1};
   sizes = over_sites(none, [this](Sizes &all, int part) {
     Body &body = made[part].body;
     body.id = parts.key(part);
@@ -196,7 +185,6 @@ void Assembly::find_sizes()
       domain->unmap(atom->x[i], atom->image[i], x);
       if (extended) extended->own_momenta(i, mass, inertia, momentum);
       ++all.natoms;
-      all.types += mixed(atom->type[i]);
       if (atom->tag[i] < all.first) {
         all.first = atom->tag[i];
         std::copy_n(x, 3, all.first_x);
@@ -534,71 +522,6 @@ void Assembly::report_missing() const
   }
 }
 
-/* ----------------------------------------------------------------------
-   bodies of several clumps
-------------------------------------------------------------------------- */
-
-namespace {
-
-/// The sites of a body along the three periods, from one of its sites: bits of intervals of a
-/// period, modulo two periods.
-struct Clumps {
-  static constexpr int PERIOD = 32, INTERVALS = 2 * PERIOD;
-  uint64_t occupied[3] = {};
-
-  void add(int direction, double periods)
-  {
-    const auto n = (int64_t) std::floor(periods * PERIOD);
-    occupied[direction] |= (uint64_t) 1 << (n & (INTERVALS - 1));
-  }
-  void merge(const Clumps &other)
-  {
-    for (int k = 0; k < 3; ++k) occupied[k] |= other.occupied[k];
-  }
-  /// True if one gap besides the outside of the body is longer than half a period.
-  bool have_gap(int direction) const
-  {
-    int gaps = 0, gap = 0;
-    for (int n = 1; n <= INTERVALS; ++n) {    // the first interval is occupied
-      const bool is_occupied = occupied[direction] >> (n % INTERVALS) & 1;
-      gaps += is_occupied && gap > PERIOD / 2;
-      gap = is_occupied ? 0 : gap + 1;
-    }
-    return gaps > 1;
-  }
-};
-
-}    // namespace
-
-/// Two plates may be one body, but two halves of a molecule at opposite faces of the box may not.
-void Assembly::warn_of_clumps() const
-{
-  const std::vector<Clumps> clumps = over_sites(Clumps(), [this](Clumps &all, int part) {
-    double first[3], periods[3];
-    to_periods(domain, sizes[part].first_x, first);
-    visit(part, [&](const Site &site) {
-      to_periods(domain, site.x, periods);
-      for (int k = 0; k < domain->dimension; ++k)
-        if (domain->periodicity[k]) all.add(k, periods[k] - first[k]);
-    });
-  });
-  tagint in_clumps = 0;
-  for (int part = 0; part < parts.number(); ++part)
-    for (int k = 0; k < 3; ++k)
-      if (clumps[part].have_gap(k)) in_clumps = parts.key(part);
-  in_clumps = over_ranks(MPI_MAX, in_clumps, world);
-  if (in_clumps && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: parts of body {} are more than half of a periodic box apart; "
-                   "if they belong together, the image flags of its atoms are wrong: unwrap the "
-                   "atoms in the data file, or use set image before this fix",
-                   in_clumps);
-}
-
-/* ----------------------------------------------------------------------
-   bodies of the same kind
-------------------------------------------------------------------------- */
-
 bool Assembly::Made::moves_apart(const double *v, const double *arm_body) const
 {
   constexpr double APART = 1.0e-3;    // velocities of a data file have few digits
@@ -607,70 +530,4 @@ bool Assembly::Made::moves_apart(const double *v, const double *arm_body) const
   to_space(axes, turning_body, turning);
   for (int k = 0; k < 3; ++k) off[k] = v[k] - state.velocity[k] - turning[k];
   return dot3(off, off) > APART * APART * dot3(v, v);
-}
-
-namespace {
-
-/// Radii of gyration about the principal axes of bodies of one kind.
-struct Radii {
-  double least[3], most[3];
-  tagint with_least[3], with_most[3];    ///< IDs of bodies
-  void merge(const Radii &other)
-  {
-    for (int k = 0; k < 3; ++k) {
-      if (other.least[k] < least[k]) least[k] = other.least[k], with_least[k] = other.with_least[k];
-      if (other.most[k] > most[k]) most[k] = other.most[k], with_most[k] = other.with_most[k];
-    }
-  }
-};
-
-}    // namespace
-
-/// Molecules that were flexible until the fix was defined keep the shapes that they had then.
-/// Atoms of finite size have different radii and masses with the same type.
-bool Assembly::warn_of_shapes() const
-{
-  constexpr double OTHER = 0.005;    // of the size; coordinates with three decimals differ less
-  if (extended || atom->rmass) return false;
-  std::vector<tagint> kinds(made.size(), 0);
-  for (size_t part = 0; part < made.size(); ++part)
-    if (made[part].owner_rank == comm->me && !made[part].body.from_file)
-      kinds[part] = 1 + (tagint) (sizes[part].types % (MAXTAGINT - 1));
-  const Parts families(comm, world, kinds.data(), (int) kinds.size());
-  std::vector<Radii> radii;
-  for (int family = 0; family < families.number(); ++family) {
-    Radii all = {{NONE, NONE, NONE}, {}, {}, {}};
-    for (const int part : families.atoms(family)) {
-      const RigidBody &rigid = made[part].body.rigid;
-      Radii one;
-      for (int k = 0; k < 3; ++k) {
-        one.least[k] = one.most[k] = std::sqrt(std::max(0.0, rigid.inertia[k] / rigid.mass));
-        one.with_least[k] = one.with_most[k] = made[part].body.id;
-      }
-      all.merge(one);
-    }
-    radii.push_back(all);
-  }
-  families.merge(radii);
-  double largest = OTHER;
-  tagint bodies[2] = {0, 0};
-  for (const Radii &one : radii)
-    for (int k = domain->dimension == 2 ? 2 : 0; k < 3; ++k) {
-      const double size = std::max({one.most[0], one.most[1], one.most[2]});
-      if (!(one.most[k] - one.least[k] > largest * size)) continue;
-      largest = (one.most[k] - one.least[k]) / size;
-      bodies[0] = one.with_least[k];
-      bodies[1] = one.with_most[k];
-    }
-  const double all = over_ranks(MPI_MAX, largest, world);
-  if (largest < all) bodies[0] = bodies[1] = 0;
-  const auto named = over_ranks(MPI_MAX, bodies, world);
-  if (named[0] && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: bodies {} and {} have atoms of the same types, and their "
-                   "shapes differ by {:.2g} % of their size; bodies keep the shapes they have "
-                   "when the fix is defined: if they are equal molecules, define the fix before "
-                   "minimize, or run one step with fix shake before the fix",
-                   named[0], named[1], 100.0 * all);
-  return named[0] != 0;
 }

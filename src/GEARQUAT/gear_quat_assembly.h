@@ -70,8 +70,6 @@ class Assembly : protected Pointers {
         act(made[part], i, arm_body);
       }
   }
-  /// Warns of bodies of the same atom types with different shapes.  True if there are any.
-  bool warn_of_shapes() const;
 
  private:
   const GivenBodies &given;
@@ -102,7 +100,6 @@ class Assembly : protected Pointers {
     double first_x[3];    ///< of this atom, unwrapped: where image flags are relative to
     double mass, speed, own_inertia, own_momentum;    ///< largest component of a site
     int finite;
-    uint64_t types;    ///< the same for the same atom types
     void merge(const Sizes &other);
   };
   struct Extremes {
@@ -180,7 +177,6 @@ class Assembly : protected Pointers {
   void check_moments(const Made &one);
   void report_faults();
   void report_missing() const;
-  void warn_of_clumps() const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

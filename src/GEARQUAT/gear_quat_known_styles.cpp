@@ -5,6 +5,8 @@
 
 #include "gear_quat_known_styles.h"
 
+#include "atom.h"
+#include "comm.h"
 #include "compute.h"
 #include "fix.h"
 #include "force.h"
@@ -13,9 +15,11 @@
 #include "pair.h"
 #include "utils.h"
 
+#include <algorithm>
 #include <cstring>
 
 using namespace LAMMPS_NS;
+using namespace FixConst;
 using namespace GearQuat;
 using namespace Fact;
 
@@ -251,12 +255,54 @@ std::string GearQuat::name_of(const Fix *fix)
 
 const Fix *GearQuat::fix_with_forces(LAMMPS *lmp, const Fix *owner)
 {
-  constexpr int ON_FORCES = FixConst::POST_FORCE | FixConst::PRE_REVERSE;
+  constexpr int ON_FORCES = POST_FORCE | PRE_REVERSE;
   for (auto *other : lmp->modify->get_fix_list())
     if (other != owner && (lmp->modify->get_fix_mask(other) & ON_FORCES) &&
         !known(THREADS | NO_FORCE, other))
       return other;
   return nullptr;
+}
+
+// where other fixes may read the velocities of predicted sites
+
+static constexpr int WITHIN_STEP = POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | POST_NEIGHBOR |
+    PRE_FORCE | PRE_REVERSE | POST_FORCE | POST_INTEGRATE_RESPA | PRE_FORCE_RESPA |
+    POST_FORCE_RESPA;
+
+std::string GearQuat::reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner)
+{
+  if (lmp->comm->ghost_velocity) return "velocities are sent to ghost atoms";
+  if (lmp->atom->vest) return "atom style " + lmp->atom->get_style() + " has them as data";
+  for (auto *other : lmp->modify->get_fix_list())
+    if (other != owner && (lmp->modify->get_fix_mask(other) & WITHIN_STEP))
+      return name_of(other) + " may read them";
+  return "";
+}
+
+bool GearQuat::makes_forces(LAMMPS *lmp, const Fix *owner)
+{
+  constexpr int AROUND_FORCES = PRE_FORCE | PRE_REVERSE | POST_FORCE | FINAL_INTEGRATE |
+      PRE_FORCE_RESPA | POST_FORCE_RESPA | FINAL_INTEGRATE_RESPA;
+  const Force *force = lmp->force;
+  if (exerts_forces(force->pair, force->pair_style) ||
+      exerts_forces(force->bond, force->bond_style) ||
+      exerts_forces(force->angle, force->angle_style) ||
+      exerts_forces(force->dihedral, force->dihedral_style) ||
+      exerts_forces(force->improper, force->improper_style) || force->kspace)
+    return true;
+  for (auto *other : lmp->modify->get_fix_list())
+    if (other != owner && (lmp->modify->get_fix_mask(other) & AROUND_FORCES)) return true;
+  return false;
+}
+
+std::vector<int> GearQuat::readers_at_end(LAMMPS *lmp, const Fix *owner)
+{
+  std::vector<int> periods;
+  for (auto *other : lmp->modify->get_fix_list())
+    if (other != owner && other->nevery > 0 && (lmp->modify->get_fix_mask(other) & END_OF_STEP) &&
+        !std::count(periods.begin(), periods.end(), other->nevery))
+      periods.push_back(other->nevery);
+  return periods;
 }
 
 std::vector<std::string> GearQuat::repeatable_forces(LAMMPS *lmp)
@@ -271,8 +317,7 @@ std::vector<std::string> GearQuat::repeatable_forces(LAMMPS *lmp)
   if (force->bond)
     add(fmt::format("bond style {}", force->bond_style), !known_bond(UNREPEATABLE, force));
   for (auto *fix : lmp->modify->get_fix_list())
-    if (lmp->modify->get_fix_mask(fix) & FixConst::POST_FORCE)
-      add(name_of(fix), known(REPEATABLE, fix));
+    if (lmp->modify->get_fix_mask(fix) & POST_FORCE) add(name_of(fix), known(REPEATABLE, fix));
   return lines;
 }
 

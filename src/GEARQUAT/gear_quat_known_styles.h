@@ -83,6 +83,14 @@ bool is_unrepeatable(const std::string &variable);
 std::string name_of(const Fix *fix);
 /// The first other fix that may exert forces on atoms, null for none.
 const Fix *fix_with_forces(LAMMPS *lmp, const Fix *owner);
+/// True if there may be forces: styles other than "zero", or fixes called around the forces.
+bool makes_forces(LAMMPS *lmp, const Fix *owner);
+/// The name of a style that reads velocities between prediction and correction, or empty.  owner:
+/// the calling fix.
+std::string reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner);
+/// The intervals in steps at which other fixes may read data at the end of a step; each number
+/// once.
+std::vector<int> readers_at_end(LAMMPS *lmp, const Fix *owner);
 /// One line for each style: whether its forces can be evaluated again.
 std::vector<std::string> repeatable_forces(LAMMPS *lmp);
 /// False for no style and for style zero, of pairs, bonds, angles, dihedrals or impropers.

@@ -113,7 +113,6 @@ void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
     free_atoms = free_atoms || one.moves_apart(atom->v[i], arm_body);
     if (any_extended) records.attach(i, mass_of(i), one.state.q);
   });
-  if (!fresh && !warned_of_shapes) warned_of_shapes = assembly.warn_of_shapes();
   for (const auto &one : assembly.bodies()) {
     if (one.owner_rank != comm->me) continue;
     const int ibody = add_owned(one.local);

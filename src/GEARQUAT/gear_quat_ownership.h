@@ -169,7 +169,7 @@ class Ownership : protected Pointers {
   Extended records;
 
   bigint natoms = 0;    ///< on all ranks
-  bool free_atoms = false, warned_of_shapes = false;
+  bool free_atoms = false;
   int outside_atoms = 0;          ///< created since the fix was defined, in no body
   bool warned_outside = false;    ///< of such atoms
   bool any_ghosts = false;        ///< on some rank an atom belongs to a body of another rank

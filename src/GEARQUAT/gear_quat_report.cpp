@@ -6,16 +6,22 @@
 #include "gear_quat_report.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_bodies.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
-#include "gear_quat_scene.h"
-#include "gear_quat_sites.h"
+#include "gear_quat_step.h"
 
+#include "atom.h"
 #include "citeme.h"
 #include "comm.h"
 #include "domain.h"
+#include "error.h"
 #include "fix.h"
+#include "force.h"
+#include "group.h"
+#include "modify.h"
+#include "neigh_list.h"
+#include "neighbor.h"
+#include "pair.h"
 #include "utils.h"
 
 #include <algorithm>
@@ -25,291 +31,134 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-namespace {
-
-/// The bodies of the simulation, the same on all ranks.
-struct Scene {
-  /// Bodies by their principal moments; moments are equal if they differ by less than 1e-7 of the
-  /// largest.
-  enum Top { POINT, LINEAR, SPHERICAL, SYMMETRIC, ASYMMETRIC, PLANAR, TOPS };
-  enum { BODIES = TOPS, FREEDOMS, SITES_OFF_CENTER, EXTENDED_SITES, SITES_OF_GHOSTS, COUNTS };
-
-  std::array<bigint, COUNTS> count;    ///< bodies of each kind, and of all kinds listed here
-  bigint fewest_sites, most_sites;     ///< of a body
-  bigint large;                        ///< bodies that every rank has
-  double farthest;                     ///< largest coordinate of a center of mass, unwrapped
-};
-
-/// A row of the report.  omits: the omitted contributions, with a bound.
-struct Effect {
-  const char *name;
-  bool on;
-  std::string reason;
-  std::string omits;
-  bool in_part = false;    ///< may omit something while it is on
-};
-
-}    // namespace
-
-static constexpr char NOTHING[] = "nothing: the trajectory is the same to the last bit";
-
 /* ----------------------------------------------------------------------
    papers to cite; LAMMPS shows the first line of each
 ------------------------------------------------------------------------- */
 
-static const char cite_first[] =
-    "fix gear/quat: quaternions in the equations of motion, first-order form: "
-    "https://doi.org/10.1080/00268977700101751\n\n"
-    "@Article{Evans1977,\n"
-    " author = {Denis J. Evans},\n"
-    " title = {On the Representation of Orientation Space},\n"
-    " journal = {Molecular Physics},\n"
-    " year = 1977,\n"
-    " volume = 34,\n"
-    " pages = {317--325}\n"
-    "}\n\n";
+static std::string article(const char *key, const char *authors, const char *title,
+                           const char *journal, int year, int volume, const char *pages)
+{
+  return fmt::format(
+      "@Article{{{},\n author = {{{}}},\n title = {{{}}},\n journal = {{{}}},\n year "
+      "= {},\n volume = {},\n pages = {{{}}}\n}}\n\n",
+      key, authors, title, journal, year, volume, pages);
+}
 
-static const char cite_second[] =
-    "fix gear/quat: quaternions in the equations of motion, second-order form: "
-    "https://doi.org/10.1016/0021-9991(85)90009-9\n\n"
-    "@Article{Rapaport1985,\n"
-    " author = {Dennis C. Rapaport},\n"
-    " title = {Molecular Dynamics Simulation Using Quaternions},\n"
-    " journal = {Journal of Computational Physics},\n"
-    " year = 1985,\n"
-    " volume = 60,\n"
-    " pages = {306--314}\n"
-    "}\n\n";
-
-static const char cite_isokinetic[] =
-    "fix gear/quat isokinetic: constant kinetic energy by Gauss' principle: "
-    "https://doi.org/10.1103/PhysRevA.28.1016\n\n"
-    "@Article{EvansGauss1983,\n"
-    " author = {Denis J. Evans and William G. Hoover and Bruce H. Failor and Bill Moran and "
-    "Anthony "
-    "J. C. Ladd},\n"
-    " title = {Nonequilibrium Molecular Dynamics via {Gauss's} Principle of Least Constraint},\n"
-    " journal = {Physical Review A},\n"
-    " year = 1983,\n"
-    " volume = 28,\n"
-    " pages = {1016--1021}\n"
-    "}\n\n";
-
-static const char cite_chains[] =
-    "fix gear/quat temp: chains of thermostats: https://doi.org/10.1063/1.463940\n\n"
-    "@Article{Martyna1992,\n"
-    " author = {Glenn J. Martyna and Michael L. Klein and Mark Tuckerman},\n"
-    " title = {{Nos\\'e--Hoover} Chains: The Canonical Ensemble via Continuous Dynamics},\n"
-    " journal = {Journal of Chemical Physics},\n"
-    " year = 1992,\n"
-    " volume = 97,\n"
-    " pages = {2635--2643}\n"
-    "}\n\n";
-
-static const char cite_pressure[] =
-    "fix gear/quat iso, aniso, x, y and z: constant pressure: https://doi.org/10.1063/1.467468\n\n"
-    "@Article{Martyna1994,\n"
-    " author = {Glenn J. Martyna and Douglas J. Tobias and Michael L. Klein},\n"
-    " title = {Constant Pressure Molecular Dynamics Algorithms},\n"
-    " journal = {Journal of Chemical Physics},\n"
-    " year = 1994,\n"
-    " volume = 101,\n"
-    " pages = {4177--4189}\n"
-    "}\n\n";
-
-static const char cite_adams[] =
-    "fix gear/quat tolerance: method of Adams with variable step and order\n\n"
-    "@Book{Shampine1975,\n"
-    " author = {L. F. Shampine and M. K. Gordon},\n"
-    " title = {Computer Solution of Ordinary Differential Equations: The Initial Value Problem},\n"
-    " publisher = {Freeman},\n"
-    " year = 1975\n"
-    "}\n\n";
-
-static const char cite_gear[] =
-    "fix gear/quat: predictor-corrector method\n\n"
-    "@Book{Gear1971,\n"
-    " author = {C. William Gear},\n"
-    " title = {Numerical Initial Value Problems in Ordinary Differential Equations},\n"
-    " publisher = {Prentice-Hall},\n"
-    " year = 1971\n"
-    "}\n\n";
+static std::string book(const char *key, const char *authors, const char *title,
+                        const char *publisher, int year)
+{
+  return fmt::format(
+      "@Book{{{},\n author = {{{}}},\n title = {{{}}},\n publisher = {{{}}},\n year = "
+      "{}\n}}\n\n",
+      key, authors, title, publisher, year);
+}
 
 void GearQuat::add_citations(LAMMPS *lmp, const Arguments &args)
 {
   if (!lmp->citeme) return;
-  lmp->citeme->add(args.scheme.remembers ? cite_adams : cite_gear);
-  if (args.scheme.first()) lmp->citeme->add(cite_first);
-  if (args.scheme.formulation == Formulation::SECOND) lmp->citeme->add(cite_second);
-  if (args.isokinetic != Isokinetic::NONE) lmp->citeme->add(cite_isokinetic);
-  if (args.thermostat.damp > 0.0) lmp->citeme->add(cite_chains);
-  if (args.pressure.any()) lmp->citeme->add(cite_pressure);
+  const auto cite = [lmp](const std::string &what, const std::string &paper) {
+    lmp->citeme->add("fix gear/quat" + what + "\n\n" + paper);
+  };
+  if (args.scheme.remembers)
+    cite(" tolerance: method of Adams with variable step and order",
+         book("Shampine1975", "L. F. Shampine and M. K. Gordon",
+              "Computer Solution of Ordinary Differential Equations: The Initial Value Problem",
+              "Freeman", 1975));
+  else
+    cite(": predictor-corrector method",
+         book("Gear1971", "C. William Gear",
+              "Numerical Initial Value Problems in Ordinary Differential Equations",
+              "Prentice-Hall", 1971));
+  if (args.scheme.first())
+    cite(": quaternions in the equations of motion, first-order form: "
+         "https://doi.org/10.1080/00268977700101751",
+         article("Evans1977", "Denis J. Evans", "On the Representation of Orientation Space",
+                 "Molecular Physics", 1977, 34, "317--325"));
+  if (args.scheme.formulation == Formulation::SECOND)
+    cite(": quaternions in the equations of motion, second-order form: "
+         "https://doi.org/10.1016/0021-9991(85)90009-9",
+         article("Rapaport1985", "Dennis C. Rapaport",
+                 "Molecular Dynamics Simulation Using Quaternions",
+                 "Journal of Computational Physics", 1985, 60, "306--314"));
+  if (args.isokinetic != Isokinetic::NONE)
+    cite(" isokinetic: constant kinetic energy by Gauss' principle: "
+         "https://doi.org/10.1103/PhysRevA.28.1016",
+         article("EvansGauss1983",
+                 "Denis J. Evans and William G. Hoover and Bruce H. Failor and Bill Moran and "
+                 "Anthony J. C. Ladd",
+                 "Nonequilibrium Molecular Dynamics via {Gauss's} Principle of Least Constraint",
+                 "Physical Review A", 1983, 28, "1016--1021"));
+  if (args.thermostat.damp > 0.0)
+    cite(" temp: chains of thermostats: https://doi.org/10.1063/1.463940",
+         article("Martyna1992", "Glenn J. Martyna and Michael L. Klein and Mark Tuckerman",
+                 "{Nos\\'e--Hoover} Chains: The Canonical Ensemble via Continuous Dynamics",
+                 "Journal of Chemical Physics", 1992, 97, "2635--2643"));
+  if (args.pressure.any())
+    cite(" iso, aniso, x, y and z: constant pressure: https://doi.org/10.1063/1.467468",
+         article("Martyna1994", "Glenn J. Martyna and Douglas J. Tobias and Michael L. Klein",
+                 "Constant Pressure Molecular Dynamics Algorithms", "Journal of Chemical Physics",
+                 1994, 101, "4177--4189"));
 }
 
 /* ----------------------------------------------------------------------
-   bodies
+   the report
 ------------------------------------------------------------------------- */
 
-static Scene::Top top_of(const RigidBody &rigid, int dimension)
+namespace {
+
+// labels of an atom: the ID of its body, or one of these
+
+constexpr double STILL = 0.0, MOVED_BY_OTHERS = -1.0;
+
+class Report : protected Pointers {
+ public:
+  Report(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
+         const Bodies &bodies, Ownership &ownership, const Sites &sites) :
+      Pointers(lmp),
+      fix(fix), args(args), bodies(bodies), ownership(ownership), sites(sites), label(labels(fleet))
+  {
+  }
+  void warn_of_own_pairs() const;
+  std::string text() const;
+
+ private:
+  const Fix *fix;
+  const Arguments &args;
+  const Bodies &bodies;
+  Ownership &ownership;
+  const Sites &sites;
+  const std::vector<double> label;    ///< of atoms, including ghosts: what moves them
+
+  // bodies by their principal moments; moments are equal if they differ by less than 1e-7 of the
+  // largest
+  enum { POINT, LINEAR, SPHERICAL, SYMMETRIC, ASYMMETRIC, PLANAR, TOPS };
+  enum { BODIES = TOPS, FREEDOMS, OFF_CENTER, EXTENDED, OF_GHOSTS, COUNTS };
+  int top_of(const RigidBody &rigid) const;
+  std::string effects() const;
+  std::string settings() const;
+  std::vector<double> labels(const Fleet &fleet) const;
+  template <class Visit> void visit_pairs(Visit visit) const;
+  std::string advice() const;
+  std::string exclude_own() const;
+  bool meets_itself() const;
+};
+
+int Report::top_of(const RigidBody &rigid) const
 {
   double i[3];
   std::copy_n(rigid.inertia, 3, i);
   std::sort(i, i + 3);
-  if (i[2] <= 0.0) return Scene::POINT;
-  if (dimension == 2) return Scene::PLANAR;
-  if (i[0] <= 0.0) return Scene::LINEAR;
-  const bool low = i[1] - i[0] < LINEAR_FRACTION * i[2],
-             high = i[2] - i[1] < LINEAR_FRACTION * i[2];
-  if (low && high) return Scene::SPHERICAL;
-  return low || high ? Scene::SYMMETRIC : Scene::ASYMMETRIC;
-}
-
-/// Collective; bodies: after their ghosts were updated.
-static Scene look_at(LAMMPS *lmp, const Bodies &bodies, const Ownership &ownership,
-                     const Sites &sites)
-{
-  const int dimension = lmp->domain->dimension;
-  bigint here[Scene::COUNTS] = {};
-  double largest_here[3] = {0.0, -(double) MAXTAGINT, 0.0};
-  here[Scene::BODIES] = bodies.nowned();
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const Body &body = bodies.body_at(ibody);
-    ++here[top_of(body.rigid, dimension)];
-    here[Scene::FREEDOMS] += body.rigid.freedoms(dimension);
-    for (const double x : bodies.state_of(ibody).center)
-      largest_here[0] = std::max(largest_here[0], std::fabs(x));
-    largest_here[1] = std::max(largest_here[1], -(double) body.natoms);
-    largest_here[2] = std::max(largest_here[2], (double) body.natoms);
-  }
-  for (const Site &site : sites) {
-    here[Scene::SITES_OFF_CENTER] += dot3(site.arm_body, site.arm_body) > 0.0;
-    here[Scene::SITES_OF_GHOSTS] += site.body >= bodies.nowned();
-  }
-  here[Scene::EXTENDED_SITES] = sites.number_of_extended();
-  const auto count = over_ranks(MPI_SUM, here, lmp->world);
-  const auto largest = over_ranks(MPI_MAX, largest_here, lmp->world);
-  const bool any = count[Scene::BODIES] > 0;
-  return {count, any ? (bigint) -largest[1] : 0, any ? (bigint) largest[2] : 0,
-          ownership.number_of_large(), largest[0]};
-}
-
-/* ----------------------------------------------------------------------
-   effects
-------------------------------------------------------------------------- */
-
-static std::string listed(const Scene &scene)
-{
-  static const char *const TOPS[] = {"points",         "linear",          "spherical tops",
-                                     "symmetric tops", "asymmetric tops", "in a plane"};
-  std::vector<std::string> parts;
-  for (int top = 0; top < Scene::TOPS; ++top)
-    if (scene.count[top]) parts.push_back(fmt::format("{}: {}", TOPS[top], scene.count[top]));
-  return utils::join_words(parts, ", ");
-}
-
-static Effect rotation(const Scene &scene)
-{
-  const bool on = scene.count[Scene::POINT] < scene.count[Scene::BODIES];
-  std::string omits;
-  if (scene.count[Scene::POINT] || scene.count[Scene::LINEAR])
-    omits =
-        fmt::format("rotation about axes whose moment of inertia is below {:g} of the largest of "
-                    "the body; of the energy of an equally fast one about that axis, less than "
-                    "this",
-                    LINEAR_FRACTION);
-  return {"rotation", on, listed(scene), omits, true};
-}
-
-static Effect torques(const Scene &scene, bool forces)
-{
-  const bigint arms = scene.count[Scene::SITES_OFF_CENTER];
-  const bool on = arms > 0 && forces;
-  return {"torques of forces", on,
-          !forces  ? "nothing in the scene makes forces"
-              : on ? fmt::format("{} sites are off the center of mass", arms)
-                   : "every site is at its center of mass",
-          NOTHING};
-}
-
-static Effect images(const Domain *domain)
-{
-  std::string axes;
-  if (domain->xperiodic) axes += " x";
-  if (domain->yperiodic) axes += " y";
-  if (domain->zperiodic) axes += " z";
-  return {"images", !axes.empty(),
-          axes.empty() ? "no direction is periodic"
-                       : "periodic in" + axes + "; while sites are in other images",
-          NOTHING};
-}
-
-static Effect ghost_bodies(const Scene &scene, int ranks)
-{
-  const bigint sites = scene.count[Scene::SITES_OF_GHOSTS];
-  std::string reason = ranks == 1 ? "one rank"
-      : sites                     ? fmt::format("{} sites have their body on another rank", sites)
-                                  : "every site is on the rank of its body";
-  if (scene.large)
-    reason +=
-        fmt::format("; {} bodies reach further than ghost atoms, all ranks have them", scene.large);
-  return {"ghost bodies", sites > 0 || scene.large > 0, reason, NOTHING};
-}
-
-static Effect compensation(const Arguments &args, const Scene &scene)
-{
-  const double rounding = 0.5 * std::numeric_limits<double>::epsilon() * scene.farthest;
-  return {"compensated sums", args.scheme.compensate,
-          args.scheme.compensate ? "compensate yes" : "compensate no",
-          fmt::format("rounding of a coordinate, at most {:.1e} of length in a sum", rounding)};
-}
-
-/// The control of the kinetic energy: at most one keyword.
-static Effect temperature(const Arguments &args)
-{
-  const ThermostatWords &words = args.thermostat;
-  const bool isokinetic = args.isokinetic != Isokinetic::NONE;
-  if (words.damp == 0.0)
-    return {"isokinetic", isokinetic, isokinetic ? "keyword isokinetic" : "isokinetic none",
-            NOTHING};
-  return {"thermostat", true,
-          fmt::format("temp {:g} {:g} {:g}, tchain {}, {}", words.start, words.stop, words.damp,
-                      words.length, words.separate ? "separate" : "total"),
-          NOTHING};
-}
-
-/// The rows of the report.
-static std::vector<Effect> effects(LAMMPS *lmp, const Fix *fix, const Arguments &args,
-                                   const Scene &scene)
-{
-  const std::string reader = reader_of_predicted_velocities(lmp, fix);
-  const bigint extended = scene.count[Scene::EXTENDED_SITES];
-  const bool masks = !args.masks.empty();
-  std::vector<Effect> rows = {
-      rotation(scene),
-      torques(scene, makes_forces(lmp, fix)),
-      {"finite size", extended > 0,
-       extended ? fmt::format("{} sites are more than points", extended) : "all sites are points",
-       NOTHING},
-      images(lmp->domain),
-      ghost_bodies(scene, lmp->comm->nprocs),
-      {"masks", masks, masks ? "keywords force and torque" : "no keyword force or torque", NOTHING},
-      temperature(args),
-      {"virial", fix->thermo_virial != 0,
-       fix->thermo_virial ? "in steps that ask for pressure or stress" : "fix_modify virial no",
-       "pressure and stress of the forces of constraint; of the trajectory nothing"},
-      {"predicted velocities", !reader.empty(), reader.empty() ? "nothing reads them" : reader,
-       NOTHING},
-      compensation(args, scene),
-      {"changing step", args.control.eps > 0.0,
-       args.control.eps > 0.0 ? args.words_of_control() : "no tolerance",
-       "control of the error of a step: the time step determines it"},
-  };
-  if (args.pressure.any()) rows.push_back({"barostat", true, args.words_of_pressure(), ""});
-  return rows;
+  if (i[2] <= 0.0) return POINT;
+  if (domain->dimension == 2) return PLANAR;
+  if (i[0] <= 0.0) return LINEAR;
+  const bool low = i[1] - i[0] < LINEAR_FRACTION * i[2];
+  const bool high = i[2] - i[1] < LINEAR_FRACTION * i[2];
+  if (low && high) return SPHERICAL;
+  return low || high ? SYMMETRIC : ASYMMETRIC;
 }
 
 /// Settings of the integration.
-static std::string settings(const Arguments &args)
+std::string Report::settings() const
 {
   const Scheme &scheme = args.scheme;
   if (scheme.remembers)
@@ -324,33 +173,253 @@ static std::string settings(const Arguments &args)
                      passes, scheme.tuned ? "tuned" : "gear");
 }
 
-/* ---------------------------------------------------------------------- */
+constexpr char NOTHING[] = "nothing: the trajectory is the same to the last bit";
 
-void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
-                            const Bodies &bodies, Ownership &ownership, const Sites &sites)
+/// The title and a row for each effect; if it is off, a long report says what is left out.
+/// Collective.
+std::string Report::effects() const
 {
-  const auto advice = advice_on_surroundings(lmp, fix, args, fleet, bodies, ownership);
-  if (args.report == Arguments::Report::NO) return;
-  const Scene scene = look_at(lmp, bodies, ownership, sites);
-  const auto rows = effects(lmp, fix, args, scene);
-  if (lmp->comm->me != 0) return;
-
-  const std::string numbers = scene.fewest_sites == scene.most_sites
-      ? fmt::format("{}", scene.most_sites)
-      : fmt::format("{} to {}", scene.fewest_sites, scene.most_sites);
-  std::string text =
-      fmt::format("Fix gear/quat {}: {} bodies of {} sites, {} degrees of freedom\n", fix->id,
-                  scene.count[Scene::BODIES], numbers, scene.count[Scene::FREEDOMS]);
-  text += settings(args);
-  for (const auto &row : rows) {
-    text += fmt::format("  {:<20} {:<3}  {}\n", row.name, row.on ? "on" : "off", row.reason);
-    if (args.report == Arguments::Report::LONG && (!row.on || row.in_part) && !row.omits.empty())
-      text += fmt::format("  {:<20}      leaves out {}\n", "", row.omits);
+  bigint here[COUNTS] = {};
+  double largest[3] = {0.0, -(double) MAXTAGINT, 0.0};    // coordinate, and atoms of a body
+  here[BODIES] = bodies.nowned();
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const Body &body = bodies.body_at(ibody);
+    ++here[top_of(body.rigid)];
+    here[FREEDOMS] += body.rigid.freedoms(domain->dimension);
+    for (const double x : bodies.state_of(ibody).center)
+      largest[0] = std::max(largest[0], std::fabs(x));
+    largest[1] = std::max(largest[1], -(double) body.natoms);
+    largest[2] = std::max(largest[2], (double) body.natoms);
   }
+  for (const Site &site : sites) {
+    here[OFF_CENTER] += dot3(site.arm_body, site.arm_body) > 0.0;
+    here[OF_GHOSTS] += site.body >= bodies.nowned();
+  }
+  here[EXTENDED] = sites.number_of_extended();
+  const auto count = over_ranks(MPI_SUM, here, world);
+  const auto most = over_ranks(MPI_MAX, largest, world);
+
+  const bigint fewest = count[BODIES] ? (bigint) -most[1] : 0;
+  std::string text = fmt::format("Fix gear/quat {}: {} bodies of ", fix->id, count[BODIES]);
+  if (fewest != (bigint) most[2]) text += fmt::format("{} to ", fewest);
+  text += fmt::format("{} sites, {} degrees of freedom\n", (bigint) most[2], count[FREEDOMS]);
+  text += settings();
+
+  const auto row = [&](const char *name, bool on, const std::string &reason,
+                       const std::string &omits = NOTHING, bool in_part = false) {
+    text += fmt::format("  {:<20} {:<3}  {}\n", name, on ? "on" : "off", reason);
+    if (args.report == Arguments::Report::LONG && (!on || in_part) && !omits.empty())
+      text += fmt::format("  {:<20}      leaves out {}\n", "", omits);
+  };
+  static const char *const NAMES[] = {"points",         "linear",          "spherical tops",
+                                      "symmetric tops", "asymmetric tops", "in a plane"};
+  std::vector<std::string> tops;
+  for (int top = 0; top < TOPS; ++top)
+    if (count[top]) tops.push_back(fmt::format("{}: {}", NAMES[top], count[top]));
+  row("rotation", count[POINT] < count[BODIES], utils::join_words(tops, ", "),
+      count[POINT] || count[LINEAR]
+          ? fmt::format("rotation about axes whose moment of inertia is below {:g} of the largest "
+                        "of the body; of the energy of an equally fast one about that axis, less "
+                        "than this",
+                        LINEAR_FRACTION)
+          : "",
+      true);
+  const bool forces = makes_forces(lmp, fix);
+  row("torques of forces", count[OFF_CENTER] > 0 && forces,
+      !forces ? "nothing in the scene makes forces"
+          : count[OFF_CENTER]
+          ? fmt::format("{} sites are off the center of mass", count[OFF_CENTER])
+          : "every site is at its center of mass");
+  row("finite size", count[EXTENDED] > 0,
+      count[EXTENDED] ? fmt::format("{} sites are more than points", count[EXTENDED])
+                      : "all sites are points");
+  std::string axes;
+  for (int k = 0; k < 3; ++k)
+    if (domain->periodicity[k]) axes += std::string(" ") + "xyz"[k];
+  row("images", !axes.empty(),
+      axes.empty() ? "no direction is periodic"
+                   : "periodic in" + axes + "; while sites are in other images");
+  const bigint large = ownership.number_of_large();
+  std::string ghosts = comm->nprocs == 1 ? "one rank" : "every site is on the rank of its body";
+  if (count[OF_GHOSTS])
+    ghosts = fmt::format("{} sites have their body on another rank", count[OF_GHOSTS]);
+  if (large)
+    ghosts += fmt::format("; {} bodies reach further than ghost atoms, all ranks have them", large);
+  row("ghost bodies", count[OF_GHOSTS] > 0 || large > 0, ghosts);
+  const bool masks = !args.masks.empty();
+  row("masks", masks, masks ? "keywords force and torque" : "no keyword force or torque");
+  const ThermostatWords &temp = args.thermostat;
+  const bool isokinetic = args.isokinetic != Isokinetic::NONE;
+  if (temp.damp == 0.0)
+    row("isokinetic", isokinetic, isokinetic ? "keyword isokinetic" : "isokinetic none");
+  else
+    row("thermostat", true,
+        fmt::format("temp {:g} {:g} {:g}, tchain {}, {}", temp.start, temp.stop, temp.damp,
+                    temp.length, temp.separate ? "separate" : "total"));
+  row("virial", fix->thermo_virial != 0,
+      fix->thermo_virial ? "in steps that ask for pressure or stress" : "fix_modify virial no",
+      "pressure and stress of the forces of constraint; of the trajectory nothing");
+  const std::string reader = reader_of_predicted_velocities(lmp, fix);
+  row("predicted velocities", !reader.empty(), reader.empty() ? "nothing reads them" : reader);
+  row("compensated sums", args.scheme.compensate,
+      args.scheme.compensate ? "compensate yes" : "compensate no",
+      fmt::format("rounding of a coordinate, at most {:.1e} of length in a sum",
+                  0.5 * std::numeric_limits<double>::epsilon() * most[0]));
+  const bool changing = args.control.eps > 0.0;
+  row("changing step", changing, changing ? args.words_of_control() : "no tolerance",
+      "control of the error of a step: the time step determines it");
+  if (args.pressure.any()) row("barostat", true, args.words_of_pressure());
+  return text;
+}
+
+/* ----------------------------------------------------------------------
+   pairs of atoms that cost time and move nothing
+------------------------------------------------------------------------- */
+
+std::vector<double> Report::labels(const Fleet &fleet) const
+{
+  std::vector<double> made(atom->nlocal + atom->nghost, STILL);
+  for (auto *other : modify->get_fix_list())
+    for (int i = 0; i < atom->nlocal && other->time_integrate && other != fix; ++i)
+      if (fleet.moves(other, atom, i)) made[i] = MOVED_BY_OTHERS;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (ownership.in_body(i)) made[i] = (double) ownership.id_of(i);
+  ownership.spread_labels(made);
+  return made;
+}
+
+/// visit(i, j, bonded): the pairs in the neighbor lists of pair styles in every step.
+template <class Visit> void Report::visit_pairs(Visit visit) const
+{
+  for (int which = 0; which < neighbor->nlist; ++which) {
+    const NeighList *list = neighbor->lists[which];
+    if (!list || list->requestor_type != NeighList::PAIR || list->occasional || list->kokkos ||
+        !list->ilist)
+      continue;
+    for (int ii = 0; ii < list->inum; ++ii) {
+      const int i = list->ilist[ii];
+      const int *neighbors = list->firstneigh[i];
+      for (int jj = 0; jj < list->numneigh[i]; ++jj)
+        visit(i, neighbors[jj] & NEIGHMASK, neighbors[jj] >> SBBITS & 3);
+    }
+  }
+}
+
+constexpr char WITH_KSPACE[] =
+    " (LAMMPS then warns of exclusions with a kspace style; the part of that style in this "
+    "energy remains, and is constant, too)";
+
+/// Sentences, each with a line for the input script.  Collective.
+std::string Report::advice() const
+{
+  constexpr double WORTH = 0.01;    // minimum share of pairs for a line
+  bigint here[4] = {};              // pairs, among still atoms, within bodies; still atoms
+  visit_pairs([&](int i, int j, int /*bonded*/) {
+    ++here[0];
+    if (label[i] != label[j] || label[i] == MOVED_BY_OTHERS) return;
+    ++here[label[i] == STILL ? 1 : 2];
+  });
+  here[3] = std::count(label.begin(), label.begin() + atom->nlocal, STILL);
+  const auto all = over_ranks(MPI_SUM, here, world);
+  std::string text;
+  const auto add = [&](bigint some, const std::string &what, const std::string &line) {
+    if (some == 0 || (double) some < WORTH * (double) all[0]) return;
+    text +=
+        fmt::format("  {} of {} pairs in the neighbor lists ({:.0f} %) are {}; without them, and "
+                    "the constant they add to the energy{}:\n    {}\n",
+                    some, all[0], 100.0 * (double) some / (double) all[0], what,
+                    force->kspace ? WITH_KSPACE : "", line);
+  };
+  std::vector<std::string> moving;
+  for (auto *other : modify->get_fix_list())
+    if (other->time_integrate &&
+        !std::count(moving.begin(), moving.end(), group->names[other->igroup]))
+      moving.emplace_back(group->names[other->igroup]);
+  add(all[1], fmt::format("among {} atoms that no fix moves", all[3]),
+      fmt::format("group still subtract all {}; neigh_modify exclude group still still",
+                  utils::join_words(moving, " ")));
+  if (!meets_itself()) add(all[2], "within bodies and do not move them", exclude_own());
+  return text;
+}
+
+/// The energy of overlapping atoms of a body may be so large that all other energies are lost in
+/// rounding.
+void Report::warn_of_own_pairs() const
+{
+  if (!exerts_forces(force->pair, force->pair_style) || meets_itself()) return;
+  using Example = std::array<tagint, 3>;    // body, two of its atoms
+  std::vector<Example> found;               // the first body on this rank
+  visit_pairs([&](int i, int j, int bonded) {
+    if (label[i] != label[j] || label[i] <= STILL) return;
+    if (force->special_lj[bonded] == 0.0 && force->special_coul[bonded] == 0.0) return;
+    if (distance2(atom->x[i], atom->x[j]) >= force->pair->cutsq[atom->type[i]][atom->type[j]])
+      return;
+    const auto [one, other] = std::minmax(atom->tag[i], atom->tag[j]);
+    const Example example = {(tagint) label[i], one, other};
+    if (found.empty() || example < found[0]) found.assign(1, example);
+  });
+  const auto all = gather_sorted(found, world);
+  if (all.empty() || comm->me != 0) return;
+  const auto [body, one, other] = all.front();
+  error->warning(FLERR,
+                 "Fix gear/quat {}: pair style {} acts between atoms of the same body, such as {} "
+                 "and {} of body {}; these forces do not move bodies, but they take time and add a "
+                 "constant to the energy, which is large where atoms overlap; the line that leaves "
+                 "them out{}: {}",
+                 fix->id, force->pair_style, one, other, body, force->kspace ? WITH_KSPACE : "",
+                 exclude_own());
+}
+
+/// True if a body may be large enough to interact with its periodic image, so that these forces
+/// move it.  Collective.
+bool Report::meets_itself() const
+{
+  double extent = 0.0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    extent = std::max(extent, bodies.body_at(ibody).extent);
+  const double largest = over_ranks(MPI_MAX, extent, world);
+  for (int k = 0; k < 3; ++k)
+    if (domain->periodicity[k] && domain->prd[k] < 2.0 * largest + neighbor->cutneighmax)
+      return true;
+  return false;
+}
+
+std::string Report::exclude_own() const
+{
+  const std::string name = group->names[fix->igroup];
+  switch (args.bodystyle) {
+    case Arguments::BodyStyle::MOLECULE:
+      return "neigh_modify exclude molecule/intra " + name;
+    case Arguments::BodyStyle::SINGLE:
+      return fmt::format("neigh_modify exclude group {0} {0}", name);
+    case Arguments::BodyStyle::GROUP: {
+      std::string line = "neigh_modify";
+      for (const auto &body : args.groups) line += fmt::format(" exclude group {0} {0}", body);
+      return line;
+    }
+    default:
+      return "neigh_modify exclude molecule/intra " + name + ", with a molecule ID for every body";
+  }
+}
+
+std::string Report::text() const
+{
+  std::string text = effects();
   if (args.report == Arguments::Report::LONG) {
     text += "  forces that can be evaluated again in a step\n";
     for (const auto &line : repeatable_forces(lmp)) text += "    " + line + "\n";
   }
-  for (const auto &line : advice) text += "  " + line + "\n";
-  utils::logmesg(lmp, text);
+  return text + advice();
+}
+
+}    // namespace
+
+void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
+                            const Bodies &bodies, Ownership &ownership, const Sites &sites)
+{
+  const Report report(lmp, fix, args, fleet, bodies, ownership, sites);
+  report.warn_of_own_pairs();
+  if (args.report == Arguments::Report::NO) return;
+  const std::string text = report.text();
+  if (lmp->comm->me == 0) utils::logmesg(lmp, text);
 }

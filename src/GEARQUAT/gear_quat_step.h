@@ -27,7 +27,6 @@
 #include "gear_quat_arguments.h"
 #include "gear_quat_blowup.h"
 #include "gear_quat_fixes.h"
-#include "gear_quat_scene.h"
 #include "gear_quat_start.h"
 #include "gear_quat_tolerance.h"
 

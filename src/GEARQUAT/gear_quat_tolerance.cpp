@@ -8,7 +8,6 @@
 #include "gear_quat_known_styles.h"
 #include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
-#include "gear_quat_scene.h"
 
 #include "comm.h"
 #include "compute.h"

@@ -3,10 +3,11 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-#include "gear_quat_scene.h"
+#include "gear_quat_checks.h"
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_forces.h"
+#include "gear_quat_images.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_sites.h"
@@ -14,7 +15,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "compute.h"
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
@@ -22,14 +22,14 @@
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
-#include "output.h"
 #include "pair.h"
 #include "update.h"
 #include "utils.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <map>
+#include <functional>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -108,73 +108,136 @@ void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
 }
 
 /* ----------------------------------------------------------------------
-   readers of data, and fixes that act on atoms
+   shapes of bodies
 ------------------------------------------------------------------------- */
 
-// where other fixes may read the velocities of predicted sites
+namespace {
 
-static constexpr int WITHIN_STEP = POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | POST_NEIGHBOR |
-    PRE_FORCE | PRE_REVERSE | POST_FORCE | POST_INTEGRATE_RESPA | PRE_FORCE_RESPA |
-    POST_FORCE_RESPA;
+/// The smallest and largest coordinates of sites along each direction, in units of the periods.
+struct Bounds {
+  std::array<double, 3> lo = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  std::array<double, 3> hi = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  void merge(const Bounds &other)
+  {
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], other.lo[k]);
+      hi[k] = std::max(hi[k], other.hi[k]);
+    }
+  }
+};
 
-std::string GearQuat::reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner)
+/// The body with the smallest ID of those that should be equal.
+struct Model {
+  tagint id = MAXTAGINT;
+  double radii[3];    ///< of gyration, about the principal axes
+  void merge(const Model &other)
+  {
+    if (other.id < id) *this = other;
+  }
+};
+
+}    // namespace
+
+void GearQuat::warn_of_gaps(LAMMPS *lmp, const Ownership &ownership)
 {
-  if (lmp->comm->ghost_velocity) return "velocities are sent to ghost atoms";
-  if (lmp->atom->vest) return "atom style " + lmp->atom->get_style() + " has them as data";
-  for (auto *other : lmp->modify->get_fix_list())
-    if (other != owner && (lmp->modify->get_fix_mask(other) & WITHIN_STEP))
-      return name_of(other) + " may read them";
-  return "";
+  const Atom *atom = lmp->atom;
+  std::vector<tagint> id(atom->nlocal, 0);
+  std::vector<std::array<double, 3>> at(atom->nlocal);    // unwrapped, in periods
+  for (int i = 0; i < atom->nlocal; ++i) {
+    double x[3];
+    lmp->domain->unmap(atom->x[i], atom->image[i], x);
+    to_periods(lmp->domain, x, at[i].data());
+    if (ownership.in_body(i)) id[i] = ownership.id_of(i);
+  }
+  const Parts parts(lmp->comm, lmp->world, id.data(), atom->nlocal);
+  std::vector<Bounds> all(parts.number()), next(parts.number());    // next: to the middle of all
+  for (int part = 0; part < parts.number(); ++part)
+    for (const int i : parts.atoms(part)) all[part].merge({at[i], at[i]});
+  parts.merge(all);
+  for (int part = 0; part < parts.number(); ++part)
+    for (const int i : parts.atoms(part)) {
+      Bounds one;
+      for (int k = 0; k < 3; ++k)
+        (2.0 * at[i][k] > all[part].lo[k] + all[part].hi[k] ? one.lo : one.hi)[k] = at[i][k];
+      next[part].merge(one);
+    }
+  parts.merge(next);
+  tagint torn = 0;
+  for (int part = 0; part < parts.number(); ++part)
+    for (int k = 0; k < lmp->domain->dimension; ++k) {
+      const double gap = next[part].lo[k] - next[part].hi[k];
+      constexpr double OVERFLOW_OF_FLAGS = 512.0;
+      if (lmp->domain->periodicity[k] && gap > 0.5 && gap < OVERFLOW_OF_FLAGS)
+        torn = parts.key(part);
+    }
+  torn = over_ranks(MPI_MAX, torn, lmp->world);
+  if (torn && lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        "Fix gear/quat: parts of body {} are more than half of a periodic box "
+                        "apart; if they belong together, the image flags of its atoms are wrong: "
+                        "unwrap the atoms in the data file, or use set image before this fix",
+                        torn);
 }
 
-bool GearQuat::makes_forces(LAMMPS *lmp, const Fix *owner)
+/// Atoms of finite size have different radii and masses with the same type.
+void GearQuat::warn_of_shapes(LAMMPS *lmp, const Bodies &bodies, const Ownership &ownership)
 {
-  constexpr int AROUND_FORCES = PRE_FORCE | PRE_REVERSE | POST_FORCE | FINAL_INTEGRATE |
-      PRE_FORCE_RESPA | POST_FORCE_RESPA | FINAL_INTEGRATE_RESPA;
-  const Force *force = lmp->force;
-  if (exerts_forces(force->pair, force->pair_style) ||
-      exerts_forces(force->bond, force->bond_style) ||
-      exerts_forces(force->angle, force->angle_style) ||
-      exerts_forces(force->dihedral, force->dihedral_style) ||
-      exerts_forces(force->improper, force->improper_style) || force->kspace)
-    return true;
-  for (auto *other : lmp->modify->get_fix_list())
-    if (other != owner && (lmp->modify->get_fix_mask(other) & AROUND_FORCES)) return true;
-  return false;
-}
-
-std::vector<int> GearQuat::readers_at_end(LAMMPS *lmp, const Fix *owner)
-{
-  std::vector<int> periods;
-  for (auto *other : lmp->modify->get_fix_list())
-    if (other != owner && other->nevery > 0 && (lmp->modify->get_fix_mask(other) & END_OF_STEP) &&
-        !std::count(periods.begin(), periods.end(), other->nevery))
-      periods.push_back(other->nevery);
-  return periods;
+  constexpr double OTHER = 0.005;    // of the size; coordinates with three decimals differ less
+  if (ownership.extended().has_records() || lmp->atom->rmass) return;
+  std::vector<tagint> kind(bodies.nowned(), 0);
+  std::vector<Model> mine(bodies.nowned());
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const Body &body = bodies.body_at(ibody);
+    if (body.from_file) continue;
+    kind[ibody] = 1 +
+        (tagint) ((std::hash<double>{}(body.rigid.mass) + body.natoms) % (size_t) (MAXTAGINT - 1));
+    mine[ibody].id = body.id;
+    for (int k = 0; k < 3; ++k)
+      mine[ibody].radii[k] = std::sqrt(std::max(0.0, body.rigid.inertia[k] / body.rigid.mass));
+  }
+  const Parts kinds(lmp->comm, lmp->world, kind.data(), bodies.nowned());
+  std::vector<Model> models(kinds.number());
+  for (int n = 0; n < kinds.number(); ++n)
+    for (const int ibody : kinds.atoms(n)) models[n].merge(mine[ibody]);
+  kinds.merge(models);
+  double largest = OTHER;
+  tagint pair[2] = {0, 0};
+  for (int n = 0; n < kinds.number(); ++n) {
+    const double *radii = models[n].radii, size = std::max({radii[0], radii[1], radii[2]});
+    for (const int ibody : kinds.atoms(n))
+      for (int k = lmp->domain->dimension == 2 ? 2 : 0; k < 3; ++k) {
+        const double off = std::fabs(mine[ibody].radii[k] - radii[k]);
+        if (!(off > largest * size)) continue;
+        largest = off / size;
+        pair[0] = models[n].id;
+        pair[1] = mine[ibody].id;
+      }
+  }
+  const double all = over_ranks(MPI_MAX, largest, lmp->world);
+  if (largest < all) pair[0] = pair[1] = 0;
+  const auto named = over_ranks(MPI_MAX, pair, lmp->world);
+  if (named[0] && lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        "Fix gear/quat: bodies {} and {} have the same atoms, and their shapes "
+                        "differ by {:.2g} % of their size; bodies keep the shapes they have when "
+                        "the fix is defined: if they are equal molecules, define the fix before "
+                        "minimize, or run one step with fix shake before the fix",
+                        named[0], named[1], 100.0 * all);
 }
 
 /* ----------------------------------------------------------------------
    molecules that are only partly in bodies
 ------------------------------------------------------------------------- */
 
-namespace {
-
-/// The atoms of a molecule.
+/// What some atom of a molecule is.
 struct Membership {
-  bigint in_bodies, unmoved;    ///< unmoved: in no body, and no fix moves them
-  bigint all;
-  int first_rank;    ///< the lowest rank with some of them
-
+  int in_body, unmoved;    ///< unmoved: in no body, and no fix moves it
   void merge(const Membership &other)
   {
-    in_bodies += other.in_bodies;
-    unmoved += other.unmoved;
-    all += other.all;
-    first_rank = std::min(first_rank, other.first_rank);
+    in_body |= other.in_body;
+    unmoved |= other.unmoved;
   }
 };
-
-}    // namespace
 
 static bool is_moved(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, int i)
 {
@@ -209,116 +272,64 @@ void GearQuat::warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Argu
   std::vector<tagint> molecule(atom->molecule, atom->molecule + atom->nlocal);
   for (auto &id : molecule) id = std::max(id, (tagint) 0);
   const Parts parts(lmp->comm, lmp->world, molecule.data(), atom->nlocal);
-  std::vector<Membership> memberships(parts.number(), {0, 0, 0, lmp->comm->me});
+  std::vector<Membership> memberships(parts.number(), {0, 0});
   for (int part = 0; part < parts.number(); ++part)
     for (const int i : parts.atoms(part)) {
-      Membership &one = memberships[part];
-      ++one.all;
-      if (ownership.in_body(i))
-        ++one.in_bodies;
-      else if (!is_moved(lmp, fix, fleet, i))
-        ++one.unmoved;
+      const int inside = ownership.in_body(i);
+      memberships[part].merge({inside, !inside && !is_moved(lmp, fix, fleet, i)});
     }
   parts.merge(memberships);
-
-  bigint number = 0;
   tagint example = MAXTAGINT;
-  for (int part = 0; part < parts.number(); ++part) {
-    const Membership &one = memberships[part];
-    if (one.in_bodies == 0 || one.unmoved == 0) continue;
-    example = std::min(example, parts.key(part));
-    number += one.first_rank == lmp->comm->me;
-  }
-  number = over_ranks(MPI_SUM, number, lmp->world);
-  if (number == 0) return;
+  for (int part = 0; part < parts.number(); ++part)
+    if (memberships[part].in_body && memberships[part].unmoved)
+      example = std::min(example, parts.key(part));
   example = over_ranks(MPI_MIN, example, lmp->world);
-  bigint counts[2] = {0, 0};
-  const int part = parts.find(example);
-  if (part < parts.number() && parts.key(part) == example) {
-    counts[0] = memberships[part].in_bodies;
-    counts[1] = memberships[part].all;
-  }
-  const auto of_example = over_ranks(MPI_MAX, counts, lmp->world);
-  if (lmp->comm->me == 0)
+  if (example != MAXTAGINT && lmp->comm->me == 0)
     lmp->error->warning(FLERR,
-                        "Fix gear/quat: {} molecules are only partly in bodies, and no fix moves "
-                        "the rest, such as molecule {}, of which {} of {} atoms are in bodies; if "
-                        "all of these atoms are to move as rigid molecules, {}",
-                        number, example, of_example[0], of_example[1], remedy(lmp, fix, args));
+                        "Fix gear/quat: molecules such as {} are only partly in bodies, and no fix "
+                        "moves the rest; if all of these atoms are to move as rigid molecules, {}",
+                        example, remedy(lmp, fix, args));
 }
 
 /* ----------------------------------------------------------------------
    bodies that meet their own images
 ------------------------------------------------------------------------- */
 
-/// As NPair::exclusion(), for two atoms of the same molecule or of none.
-static bool is_excluded(const LAMMPS *lmp, int i, int j)
+/// As NPair::exclusion(), for an atom and its image.
+static bool is_excluded(const LAMMPS *lmp, int i)
 {
-  const Atom *atom = lmp->atom;
   const Neighbor *list = lmp->neighbor;
-  const int *mask = atom->mask;
-  if (list->nex_type && list->ex_type[atom->type[i]][atom->type[j]]) return true;
+  const int mask = lmp->atom->mask[i], type = lmp->atom->type[i];
+  if (list->nex_type && list->ex_type[type][type]) return true;
   for (int m = 0; m < list->nex_group; ++m)
-    if ((mask[i] & list->ex1_bit[m] && mask[j] & list->ex2_bit[m]) ||
-        (mask[i] & list->ex2_bit[m] && mask[j] & list->ex1_bit[m]))
-      return true;
+    if (mask & list->ex1_bit[m] && mask & list->ex2_bit[m]) return true;
   for (int m = 0; m < list->nex_mol; ++m)
-    if (mask[i] & mask[j] & list->ex_mol_bit[m] &&
-        (atom->molecule[i] == atom->molecule[j]) == (list->ex_mol_intra[m] != 0))
-      return true;
+    if (mask & list->ex_mol_bit[m] && list->ex_mol_intra[m] != 0) return true;
   return false;
 }
 
-/// Unwrapped positions, which ghosts receive from their atoms, tell images from the body itself.
-static bool excludes_image(const LAMMPS *lmp, const std::array<std::vector<double>, 4> &label,
-                           double period, int i, int j)
-{
-  const Atom *atom = lmp->atom;
-  double apart2 = 0.0, off = 0.0;
-  for (int k = 0; k < 3; ++k) {
-    const double apart = atom->x[i][k] - atom->x[j][k];
-    apart2 += apart * apart;
-    off = std::max(off, std::fabs(apart - (label[k][i] - label[k][j])));
-  }
-  return off > 0.5 * period && apart2 < lmp->force->pair->cutsq[atom->type[i]][atom->type[j]] &&
-      is_excluded(lmp, i, j);
-}
-
 void GearQuat::warn_of_excluded_images(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
-                                       Ownership &ownership, const Sites &sites)
+                                       const Sites &sites)
 {
   const Force *force = lmp->force;
   if (!lmp->neighbor->exclude || !exerts_forces(force->pair, force->pair_style)) return;
-  double period = HUGE_VAL, extent = 0.0;
-  for (int k = 0; k < 3; ++k)
-    if (lmp->domain->periodicity[k]) period = std::min(period, lmp->domain->prd[k]);
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    extent = std::max(extent, bodies.body_at(ibody).extent);
-  if (2.0 * over_ranks(MPI_MAX, extent, lmp->world) + force->pair->cutforce < period) return;
-
-  const int nlocal = lmp->atom->nlocal, nall = nlocal + lmp->atom->nghost;
-  std::array<std::vector<double>, 4> label;    // unwrapped positions, and IDs of bodies that turn
-  for (auto &one : label) one.assign(nall, 0.0);
-  for (const Site &site : sites) {
-    double x[3], expected[3];
-    sites.unwrapped(site, x, expected);
-    for (int k = 0; k < 3; ++k) label[k][site.atom] = x[k];
-    const Body &body = bodies.body_at(site.body);
-    const bool turns = body.rigid.rotational_freedoms() > 0 && !(body.off & torque_off(2));
-    if (turns) label[3][site.atom] = (double) body.id;
-  }
-  for (auto &one : label) ownership.spread_labels(one);
-  std::map<double, std::vector<int>> ghosts;    // of each body
-  for (int j = nlocal; j < nall; ++j)
-    if (label[3][j] > 0.0) ghosts[label[3][j]].push_back(j);
   tagint found = 0;
-  for (int i = 0; i < nlocal && !found && !ghosts.empty(); ++i)
-    for (const int j : ghosts[label[3][i]])
-      if (excludes_image(lmp, label, period, i, j)) found = (tagint) label[3][i];
+  for (const Site &site : sites) {
+    const Body &body = bodies.body_at(site.body);
+    if (body.rigid.rotational_freedoms() == 0 || (body.off & torque_off(2))) continue;
+    double x[3], place[3];
+    sites.unwrapped(site, x, place);
+    for (int k = 0; k < 3; ++k) {
+      const double span = 2.0 * std::fabs(place[k] - bodies.state_of(site.body).center[k]);
+      if (lmp->domain->periodicity[k] && span + force->pair->cutforce >= lmp->domain->prd[k] &&
+          is_excluded(lmp, site.atom))
+        found = body.id;
+    }
+  }
   found = over_ranks(MPI_MAX, found, lmp->world);
   if (found && lmp->comm->me == 0)
     lmp->error->warning(FLERR,
-                        "Fix gear/quat {}: body {} is so long that it meets its own periodic "
+                        "Fix gear/quat {}: body {} is so long that it may meet its own periodic "
                         "images, and neigh_modify exclude leaves out these pairs too, which would "
                         "turn it; do not exclude its pairs, use a larger box, or switch its "
                         "torque off",
