@@ -166,7 +166,7 @@ void FixGearQuat::setup_pre_exchange()
 {
   for (int i = 0; atom->vest && i < atom->nlocal; ++i)    // no fix extrapolates the first ones
     if (ownership.in_body(i)) std::copy_n(atom->v[i], 3, atom->vest[i]);
-  if (step.coupling && !step.coupling->knows_box())
+  if (!step.bath.box.knows_box())
     step.forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
   driven_box.begin_setup();
 }
@@ -238,7 +238,7 @@ void FixGearQuat::show_bodies()
 
 void FixGearQuat::pre_exchange()
 {
-  if (step.coupling) step.coupling->flip_box();
+  step.bath.box.flip();
 }
 
 /// Atoms were exchanged, and other fixes may have inserted or removed bodies.
@@ -275,7 +275,7 @@ void FixGearQuat::end_step(double **f, double **torque)
   sites.advance_densities(update->dt);
   if (box_change != NO_BOX_CHANGE) ownership.note_box();
   if (step.has_readers()) show_bodies();
-  if (step.coupling && step.coupling->is_tilted()) next_reneighbor = update->ntimestep + 1;
+  if (step.bath.box.is_tilted()) next_reneighbor = update->ntimestep + 1;
   compare_calls(world);
 }
 
@@ -431,7 +431,7 @@ int FixGearQuat::modify_param(int narg, char **arg)
         "Fix gear/quat: fix_modify extra/dof is the number of degrees of freedom, 0 or more, "
         "that temp or a pressure does not count; keywords of neither are in the command, or "
         "the number is negative");
-  step.coupling->subtract(args.thermostat.subtracted);
+  step.bath.subtract(args.thermostat.subtracted);
   return 2;
 }
 

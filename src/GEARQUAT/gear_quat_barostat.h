@@ -19,26 +19,42 @@
      S' = V sum (P_ab - P delta_ab) G_ab - V P' - sum (W'/2) G_ab^2,   P = sum P_aa/d
 
    is constant.  The box (gear_quat_box.h) moves as the bodies do: a step predicts the box, LAMMPS
-   evaluates the forces in the predicted box, and every pass of the corrector corrects the box. */
+   evaluates the forces in the predicted box, and every pass of the corrector corrects the box.
+
+   Without these keywords moves() is false: functions do nothing, and centers are not scaled. */
 
 #ifndef LMP_GEAR_QUAT_BAROSTAT_H
 #define LMP_GEAR_QUAT_BAROSTAT_H
 
+#include "gear_quat_arguments.h"
 #include "gear_quat_box.h"
 #include "gear_quat_box_frequency.h"
-#include "gear_quat_scalar.h"
-#include "gear_quat_thermostat.h"
+#include "gear_quat_fields.h"
+#include "gear_quat_limits.h"
+#include "gear_quat_remembered_loads.h"
+#include "gear_quat_startup.h"
+#include "gear_quat_temperature.h"
 #include "gear_quat_virial.h"
 
-#include <memory>
+#include <optional>
 
 namespace LAMMPS_NS::GearQuat {
 
-class Barostat : public Thermostat {
+/// The nodes of a start, centered at the present time.
+struct StartNodes {
+  const Collocation &collocation;
+  double spacing;    ///< time between nodes
+  double h;          ///< the step of the histories
+};
+
+/// 2K around the start, in units of the node spacing.
+ChainDrive drive_of(const Collocation &collocation, const Collocation::Scalar &twice);
+
+class Barostat : protected Pointers {
  public:
-  /// Elements of the fix's vector after the elements of Thermostat.
+  /// Elements of the fix's vector after those of chains.
   enum {
-    PRESSURE = Thermostat::ELEMENTS,
+    PRESSURE,
     P_COMPONENT,    ///< xx yy zz xy xz yz
     P_TARGET = P_COMPONENT + 6,
     STRAIN_RATE,    ///< xx yy zz
@@ -48,168 +64,190 @@ class Barostat : public Thermostat {
   };
 
   Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sites,
-           const ThermostatWords &words, const PressureWords &pressure, const Scheme &scheme);
+           const PressureWords &pressure, Temperature &temperature);
 
-  void begin_run(bool anew, double h) override;
-  void set_scheme(const Scheme &scheme) override;
-  const char *reason_to_start_anew() const override;
+  bool moves() const { return is_asked; }
+  void set_scheme(const Scheme &scheme);
+  /// The number of values of a scalar that is integrated with the box.
+  static int values_of_scalar(const Scheme &scheme);
 
-  void predict(const Integrator &integrator) override;
-  void meet_virial(double **f) override { virial.measure(f, scale()); }
-  BodyState scaled(const BodyState &s) const override
+  // before a run
+
+  /// Ends the run if forces have no virial, or positions do not follow the box.  Collective.
+  void refuse_scene() const;
+  /// After Temperature::begin_run().  Collective.
+  void begin_run(bool anew, double h);
+  const char *reason_to_start_anew() const;
+  /// False if another command has changed the box since the last run.
+  bool knows_box() const { return !moves() || box.is_shown(); }
+
+  // a step
+
+  /// Histories are predicted, and states contain their scaled rows: the box becomes the predicted
+  /// one, and centers and velocities of states become unscaled.
+  void predict(double h);
+  /// With a changing step, scalars have the coefficients of velocities.
+  void choose_coefficients(CorrectorCoefficients::Array &c, int values) const;
+  /// The loads are from the forces f on atoms, which LAMMPS has just evaluated.  Collective.
+  void measure_virial(double **f);
+  /// False if in the present step LAMMPS needs the virial of the constraint forces only for this.
+  bool others_ask_for_virial() const;
+  /// From the present sums; alpha: of the bodies.
+  void measure(const Friction &alpha);
+  void begin_passes(double h);
+  void pass(const Friction &alpha, double h, int values);
+  void end_passes();
+  /// A corrected state with a scaled center becomes unscaled.  predicted: its scaled center.
+  void place(const double *force, const double *predicted, BodyState &state,
+             Correction &last) const;
+  /// Corrected states are placed; LAMMPS gets the corrected box.
+  void end_step();
+  /// The step of length h is accepted.
+  void note_step(double h);
+  void keep() { kept = now; }
+  void put_back();
+  void rescale(double ratio);
+  /// True if the box is tilted so much that another cell of the same lattice should replace it.
+  bool is_tilted() const { return asked.shears() && asked.flip && box.is_tilted(); }
+  /// Replaces a tilted box, before atoms are exchanged.  Collective.
+  void flip();
+
+  // scaled and unscaled
+
+  BodyState scaled(const BodyState &s) const
   {
     BodyState found = s;
-    box.to_scaled(found);
+    if (moves()) box.to_scaled(found);
     return found;
   }
-  bool others_ask_for_virial() const override;
-  void measure() override;
-  Load acting(int ibody) const override
+  Load scaled(const Load &load) const
   {
-    return damped_load(bodies.rigid_of(ibody), scaled(bodies.state_of(ibody)), met(ibody), of_all);
+    Load found = load;
+    inverse.times(load.force, found.force);
+    return found;
   }
-  void correct(const Integrator &integrator, int passes) override;
-  bool knows_box() const override { return box.is_shown(); }
-  bool is_tilted() const override;
-  void flip_box() override;
-  void note_step(double h) override;
-  void keep() override;
-  void put_back() override;
-  double longest_step() const override;
-  void errors(double h, int values, const Include &include) const override;
-  std::vector<Rate> rates(double h, bool ahead) const override;
-  void follow_changes(double h) override;
-  void rescale(double ratio) override;
+  void to_space(double *velocity) const
+  {
+    const double scaled[3] = {velocity[0], velocity[1], velocity[2]};
+    matrix.times(scaled, velocity);
+  }
+  /// Of all bodies, in the present pass.
+  const CellFriction &friction() const { return of_bodies; }
 
-  void refer_to_box(double h) override;
-  void begin_start(const StartNodes &nodes) override;
-  void foretell(const StartNodes &nodes) override;
-  void enter_node(const StartNodes &nodes, int node) override;
-  void visit_node(const StartNodes &nodes, int node) override;
-  void settle(const StartNodes &nodes, int pair) override;
-  void leave_nodes() override;
-  bool probes() const override { return true; }
-  void enter_probe(int side) override;
-  void leave_probe(int side) override;
-  void seed(const StartNodes &nodes, int pairs, int values) override;
-  void seed_local(double h, int terms) override;
-  int vflag() const override { return virial.flag(); }
+  // limits
 
-  int elements() const override { return ELEMENTS; }
-  double element(int n) override;
-  bool extensive(int n) const override { return n == E_BOX || Thermostat::extensive(n); }
-  double energy() const override;
+  double longest_step() const;
+  /// The displacement at the faces, and its work.
+  StepErrors errors(double h) const;
+  /// Adds the row of the oscillation of the box.
+  void add_rate(double h, std::vector<Rate> &table) const;
 
-  void fields(Fields &v) override;
+  // the start
+
+  /// The present box becomes the reference, and keeps its rate.
+  void refer_to_box(double h);
+  void begin_start(const StartNodes &nodes);
+  void foretell(const StartNodes &nodes);
+  /// Sets the box of a node, and unscales the states, whose centers are scaled.
+  void enter_node(const StartNodes &nodes, int node);
+  /// twice: of the box, at the nodes so far.
+  void visit_node(const StartNodes &nodes, int node, const Collocation::Scalar &twice,
+                  const Friction &alpha);
+  void settle(const StartNodes &nodes, int pair);
+  /// Restores the box of the start.
+  void leave_nodes();
+  void seed(const StartNodes &nodes, int pairs, int values, const Collocation::Scalar &twice);
+  void seed_local(double h, int terms);
+  /// After the start, forces are evaluated in a box that is a little smaller (side -1), and a little
+  /// larger (1), with the scaled centers of the start.
+  void enter_probe(int side);
+  void leave_probe(int side);
+  /// LAMMPS' vflag for the evaluation of forces at nodes.
+  int vflag() const { return virial ? virial->flag() : 0; }
+
+  double twice_kinetic() const;
+  /// S' of Eq. P7.
+  double rate_of_heat() const;
+  /// The terms of Eq. P7 with the box.  heat: S.
+  double energy(double heat) const;
+  /// After Temperature::sum_present().
+  double element(int n) const;
+
+  void fields(Fields &v);
 
  private:
-  friend class Coupling;    // calls the functions required by correct_by_passes()
-
+  const Fix *fix;
+  Bodies &bodies;
   PressureWords asked;
-  MolecularVirial virial;
+  const bool is_asked;
+  Temperature &temperature;
+  std::optional<MolecularVirial> virial;    ///< of a box that moves
   Box box;
-  CellHistory cell;
-  Chain chain;           ///< of the box
-  ScalarHistory heat;    ///< S
-  int values_of_heat = 0;
-  CorrectorCoefficients::Array heat_coefficients;    ///< of a first-order equation
-  RememberedLoads times{false};    ///< with a changing step: of the last drives of the box
-  double width = 0.0;              ///< the step of the histories
-  Upper target;                    ///< pressures of the present step, or at a node
-  Upper target_rate;               ///< change of these targets with time
-  double kt = 0.0;                 ///< of the mass of the box in that step
-  Upper made_target, made_rate;    ///< of the last step before this run
-  std::array<double, Upper::SIZE> periods = {};    ///< damping times in the last step
-  std::string told_of_box;                         ///< last message of the degrees of freedom
-
-  Upper matrix, rate;    ///< M and G in the present pass, or at a node
-  struct Moving {        ///< variables that a step changes
+  struct Moving {    ///< variables that a step changes
     CellHistory cell;
-    Chain chain;
-    ScalarHistory heat;
+    Chain chain;    ///< of the box
+    template <class V> void fields(V &v) { v(cell, chain); }
   };
-  std::unique_ptr<Moving> kept;
-  bool changing_step;    ///< keyword tolerance
-  Upper local_error;     ///< of M M^-1, of the last step
-  Upper kinetic;         ///< sum m v_a v_b, as of the last sum
-  Upper correction;      ///< of M M^-1 by the corrector, in the last step
-  double friction_of_box = 0.0;
-  CellFriction of_all;
-  Upper inverse;    ///< of M
+  Moving now, kept;
+  RememberedLoads times{false};    ///< with a changing step: of the last drives of the box
+  bool changing_step = false;      ///< keyword tolerance
+  double width = 0.0;              ///< the step of the histories
+  struct Setting {
+    Upper target;         ///< pressures
+    Upper target_rate;    ///< change of these targets with time
+    Upper period;         ///< damping times
+    template <class V> void fields(V &v) { v(target, target_rate, period); }
+  };
+  Setting present, made;        ///< of this step, or at a node, and of the last step
+  double time_of_node = 0.0;    ///< since the present step
 
-  using Tensor = ExactSum[Upper::SIZE];
-  Tensor tensor;    ///< of owned bodies, in a pass
+  Upper matrix = Upper::one(), inverse = Upper::one();    ///< M in the present pass, or at a node
+  Upper rate;                                             ///< G
+  Upper correction;     ///< of M M^-1 by the corrector, in the last step
+  Upper local_error;    ///< of M M^-1, of the last step
+  double xi = 0.0;      ///< of the chain
+  CellFriction of_bodies;
 
   BoxFrequency frequency;
   bool warned_mesh = false;
-  double longest_body = 0.0;    ///< largest distance of a site from the owner atom of its body
-  static constexpr double IN_A_STEP = 0.03;    ///< limit for the change of the box in a step
-  Upper strongest;                             ///< drive in this run, as magnitudes
-  Upper drive_of_smaller;                      ///< in the start, before the box is enlarged
-  Upper begun_box, begun_matrix;               ///< the box of LAMMPS, and M, where the run began
+  std::string told;                 ///< last message of the degrees of freedom
+  double longest_body = 0.0;        ///< largest distance of a site from the owner atom of its body
+  Upper strongest;                  ///< drive in this run, as magnitudes
+  Upper drive_of_smaller;           ///< in the start, before the box is enlarged
+  Upper begun_box, begun_matrix;    ///< the box of LAMMPS, and M, where the run began
 
   // the start
 
   Collocation::Nodes<Upper::SIZE, 2> cell_at_nodes = {};
-  Collocation::Scalar twice_box_at_nodes = {}, heat_at_nodes = {};
-  bool held_box = false;
+  bool held = false;
   Upper target_at_start;
 
-  double dimensions() const;
+  bool has_chain() const { return asked.length > 0; }
   double weight_of(int direction) const;
-  double mass_of(int component) const;
-  double twice_kinetic_of_box() const;
-  ChainTarget target_of_box(double steps_ahead, double h) const;
+  double kt() const;
+  Upper masses() const;
   int free_components() const;
-  double volume() const;
+  ChainTarget target_of_chain(double steps_ahead, double h) const;
+  double period() const;
+  double volume() const { return box.volume(matrix); }
   double mean_target(const Upper &pressures) const;
   void find_target(bigint step, double h);
   void move_target(double time);
-  void refuse_scene() const;
-  void refuse_others() const;
-  void tell_freedoms_of_box();
-  void find_temperature();
-  Upper masses() const;
-  double period() const;
-  double probing_strain() const;
-  void watch_box(double h);
-  void watch_mesh();
-  void refuse_box() const;
-  void find_longest_body();
-  void refuse_narrow_box(int direction, double edge) const;
-  void note_drive(const Upper &now);
-  double period_for_drive(double omega) const;
-  void set_heat(const Scheme &scheme);
-  void prepare(double h);
-  void advance_box(double h, int values);
   Upper drive() const;
-  double rate_of_heat() const;
-  /// The components of Upper that may be nonzero in this box: tilts come last.
-  int moving_components() const { return asked.shears() ? Upper::SIZE : 3; }
-  void add_momenta(int ibody, const double *velocity, Tensor &sums, int count) const;
-  void sum_momenta(const Tensor &sums);
-  void sum_present_momenta();
-  void note_box();
-  double friction_now() const { return chain_acts() ? chain.friction() : 0.0; }
-  bool chain_acts() const { return asked.length > 0; }
+  void note_drive(const Upper &drive);
+  Upper begin_acceleration();
+  void note_rates(double h);
+  void combine(const Friction &alpha);
+  void show(const Upper &deformation);
 
-  // the passes of a step
-
-  Load met(int ibody) const
-  {
-    Load scaled_load = bodies.load_of(ibody);
-    inverse.times(bodies.load_of(ibody).force, scaled_load.force);
-    return scaled_load;
-  }
-  CellFriction friction_of(int /*ibody*/) const { return of_all; }
-  void begin_passes(const Integrator &integrator);
-  void add_prediction(const Integrator &integrator, int ibody, const Integrator::Pending &pending);
-  void find_friction(const Integrator &integrator, int pass);
-  void add(int ibody, const double *scaled_velocity, const double *omega_body,
-           const Integrator::Pending &pending);
-  void end_passes(const Integrator &integrator);
-  void place(int ibody, const Integrator::Pending &pending, BodyState &state,
-             Correction &last) const;
+  void refuse_others() const;
+  void refuse_box() const;
+  void refuse_narrow_box(int direction, double edge) const;
+  void tell_freedoms();
+  double period_for_drive(double omega) const;
+  double longer_period() const;
+  double probing_strain() const;
+  void watch_mesh();
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -95,8 +95,7 @@ std::string Blowup::remedy(int ibody, const BodyState &s, double h) const
                        "its size; state a larger one, or 0 along this axis, by an infile",
                        moment);
   std::vector<Rate> table = rates;
-  if (coupling)
-    for (const auto &rate : coupling->rates(h, false)) table.push_back(rate);
+  for (const auto &rate : bath.rates(h)) table.push_back(rate);
   for (const auto &rate : table)
     if (rate.part() > 1.0) return rate.part() < OVERLAP ? words_of(rate) : APART;
   if (size <= args.control.shortest)

@@ -9,7 +9,7 @@
 #define LMP_GEAR_QUAT_BLOWUP_H
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_coupling.h"
+#include "gear_quat_bath.h"
 #include "gear_quat_limits.h"
 #include "gear_quat_sites.h"
 
@@ -23,13 +23,13 @@ std::string words_of(const Rate &rate);
 
 class Blowup : protected Pointers {
  public:
-  Blowup(LAMMPS *lmp, const Arguments &args, const Bodies &bodies, const Sites &sites) :
-      Pointers(lmp), args(args), bodies(bodies), sites(sites)
+  Blowup(LAMMPS *lmp, const Arguments &args, const Bodies &bodies, const Sites &sites,
+         const Bath &bath) :
+      Pointers(lmp), args(args), bodies(bodies), sites(sites), bath(bath)
   {
   }
 
   std::vector<Rate> rates;               ///< the table of rates, as of its last look
-  const Coupling *coupling = nullptr;    ///< null if there is none
   MotionLimits limits;                   ///< for the current step and box
 
   /// Ends the run if the present loads would make an owned body unstable within a step h.  Atoms
@@ -46,6 +46,7 @@ class Blowup : protected Pointers {
   const Arguments &args;
   const Bodies &bodies;
   const Sites &sites;
+  const Bath &bath;
 
   std::string what_happened(int ibody, const BodyState &s, double h) const;
   std::string remedy(int ibody, const BodyState &s, double h) const;

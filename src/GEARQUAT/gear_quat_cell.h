@@ -166,6 +166,7 @@ class CellHistory {
   static constexpr int WIDTH = Upper::SIZE;
   using Rows = std::array<double, WIDTH * MAX_VALUES>;
 
+  CellHistory() = default;
   explicit CellHistory(const Scheme &of_bodies) { set_scheme(of_bodies); }
 
   static Scheme scheme_of(const Scheme &bodies)

@@ -67,7 +67,7 @@ struct Scheme {
   bool momentum() const { return formulation == Formulation::MOMENTUM; }
   int values() const { return rows ? rows : first() ? FIRST_PAPER : SECOND_PAPER; }
   int width() const { return first() ? FIRST_WIDTH : SECOND_WIDTH; }
-  /// Passes of all bodies together, with a coupling.  The kinetic energy needs three passes to
+  /// Passes of all bodies together, with a bath.  The kinetic energy needs three passes to
   /// converge: with two, water at long steps is heated with five values and cooled with seven.  Nine
   /// values are for short steps.
   int coupled_passes() const { return !momentum() ? passes : values() < 9 ? 3 : 2; }

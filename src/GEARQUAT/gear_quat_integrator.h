@@ -201,14 +201,6 @@ class Integrator : public Kinematics {
     add_first(rows, Scheme::OMEGA, change);
   }
 
-  /// Advances the n rows of y with y' = rate to t + h, with step and coefficients of the momenta.
-  void advance(double *rows_of_scalar, double rate) const
-  {
-    Nordsieck<1>::predict(rows_of_scalar, n);
-    const double residual = h * rate - rows_of_scalar[1];
-    Nordsieck<1>::correct<1>(rows_of_scalar, n, corrector.c.data(), 0, &residual);
-  }
-
   /// Formulation momentum: moves and turns a body, and changes its momenta.  place: as in row 0, with
   /// the integral of h L in the columns of L; rate: as in row 1.
   void displace(const RigidBody &body, const double *place, const double *rate, double *rows) const

@@ -3,98 +3,65 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Keyword isokinetic: bodies with constant kinetic energy (gear_quat_gauss.h).  The multipliers
-   need sums over all bodies on all ranks: a reduction of four numbers in every pass of the
-   corrector, and one after it.
-
-   The heat removed by the constraint, W' = sum(F.v + tau.omega), is integrated like the bodies, so
-   that the sum of potential energy, kinetic energy and W is constant to the order of the method. */
+/* Keyword isokinetic: the sums over all bodies, of owned bodies on this rank and then of all ranks,
+   that give the multipliers of Gauss's principle (gear_quat_gauss.h), and the kinetic energy that
+   stays constant. */
 
 #ifndef LMP_GEAR_QUAT_ISOKINETIC_H
 #define LMP_GEAR_QUAT_ISOKINETIC_H
 
-#include "gear_quat_coupling.h"
-#include "gear_quat_scalar.h"
+#include "gear_quat_bodies.h"
+#include "gear_quat_integrator.h"
+#include "pointers.h"
 
 namespace LAMMPS_NS::GearQuat {
 
-class IsokineticConstraint : public Coupling {
+class IsokineticConstraint : protected Pointers {
  public:
-  /// Elements of the fix's vector after the elements of Sums.
-  enum { HEAT, ALPHA_TRANSLATION, ALPHA_ROTATION, ELEMENTS };
-
   /// rescale: after each step momenta are scaled to the kinetic energy at the start.
-  IsokineticConstraint(LAMMPS *lmp, Bodies &bodies, const Scheme &scheme, Isokinetic mode,
-                       bool rescale);
-
-  /// Without histories, the present kinetic energy becomes the conserved kinetic energy.
-  void begin_run(bool anew, double h) override;
-  bool may_start_anew() const override { return false; }
-
-  void measure() override;
-  Load acting(int ibody) const override
+  IsokineticConstraint(LAMMPS *lmp, const Bodies &bodies, Isokinetic mode, bool rescale) :
+      Pointers(lmp), bodies(bodies), mode(mode), scales(acts() && rescale)
   {
-    return damped_load(bodies.rigid_of(ibody), bodies.state_of(ibody), bodies.load_of(ibody),
-                       of_all);
   }
-  void correct(const Integrator &integrator, int passes) override
+
+  bool acts() const { return mode != Isokinetic::NONE; }
+  const Multipliers &multipliers() const { return alpha; }
+  /// Of all forces: the rate of the heat that the constraint removes.
+  double power() const { return sums.power(); }
+
+  /// Without histories, the present kinetic energy becomes the conserved one.  Ends the run if it
+  /// is zero.  Collective.
+  void begin_run(bool anew);
+  /// The contribution of an owned body.  torque_body: at the predicted pose, in all passes.
+  void add(int ibody, const double *velocity, const double *omega_body, const double *torque_body)
   {
-    correct_by_passes(*this, integrator, passes);
+    here.add(bodies.rigid_of(ibody), bodies.load_of(ibody).force, torque_body, velocity,
+             omega_body);
   }
-  void set_scheme(const Scheme &other) override { scheme = other; }
-  void rescale(double ratio) override { heat.rescale(ratio, scheme.values()); }
-
-  void begin_start(const StartNodes &nodes) override;
-  void foretell(const StartNodes &nodes) override { nodes.collocation.foretell(heat_at_nodes); }
-  void visit_node(const StartNodes &nodes, int node) override;
-  void settle(const StartNodes &nodes, int pair) override
+  /// Sums the contributions over all ranks, and begins again.  Collective.
+  void sum();
+  /// From the present states and loads.  Collective.
+  void sum_present();
+  /// After the last pass; returns the kinetic energy that scale() removes.  Collective.
+  double end_passes();
+  void scale(const Integrator &integrator, const RigidBody &rigid, double *rows) const
   {
-    nodes.collocation.settle(pair, heat_at_nodes);
+    if (scales) integrator.scale_momenta(rigid, factor, rows);
   }
-  void seed(const StartNodes &nodes, int pairs, int values) override;
-  void seed_local(double h, int terms) override;
 
-  int elements() const override { return ELEMENTS; }
-  double element(int n) override;
-  bool extensive(int n) const override { return n == HEAT; }
-
-  void fields(Fields &v) override { v(counted, target, heat); }
+  template <class V> void fields(V &v) { v(counted, target); }
 
  private:
-  friend class Coupling;    // calls the functions required by correct_by_passes()
-
-  Scheme scheme;
+  const Bodies &bodies;
   Isokinetic mode;
   bool scales;    ///< momenta after a step
 
   KineticSums here;    ///< of owned bodies, in a pass
   KineticSums sums, target;
-  Multipliers alpha;
-  Friction of_all;    ///< alpha
-  Multipliers factor;
+  Multipliers alpha, factor;
   bigint counted = 0;    ///< number of bodies in the target
-  ScalarHistory heat;
-  Collocation::Scalar heat_at_nodes;
 
-  void sum();
   void refuse_rest() const;
-
-  static constexpr bool SUMS_OF_LAST_PASS = true;
-  void begin_passes(const Integrator &) { here = KineticSums(); }
-  void add_prediction(const Integrator &, int ibody, const Integrator::Pending &pending);
-  void find_friction(const Integrator &, int /*pass*/) { sum(); }
-  Friction friction_of(int /*ibody*/) const { return of_all; }
-  void add(int ibody, const double *velocity, const double *omega_body,
-           const Integrator::Pending &pending)
-  {
-    here.add(bodies.rigid_of(ibody), bodies.load_of(ibody).force, pending.torque_body, velocity,
-             omega_body);
-  }
-  void end_passes(const Integrator &integrator);
-  void finish(const Integrator &integrator, const RigidBody &rigid, double *rows) const
-  {
-    if (scales) integrator.scale_momenta(rigid, factor, rows);
-  }
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -11,6 +11,8 @@
 #ifndef LMP_GEAR_QUAT_RANKS_H
 #define LMP_GEAR_QUAT_RANKS_H
 
+#include "gear_quat_exact_sum.h"
+
 #include "comm.h"
 #include "lmptype.h"
 
@@ -86,6 +88,16 @@ template <typename T> T over_ranks(MPI_Op op, T here, World world)
 {
   T one[1] = {here};
   return over_ranks(op, one, world)[0];
+}
+
+/// Exact sums over all ranks, element by element.
+template <size_t N> void sum_over_ranks(ExactSum (&sums)[N], World world)
+{
+  constexpr int LIMBS = ExactSum::LIMBS;
+  bigint here[N * LIMBS];
+  for (size_t k = 0; k < N * LIMBS; ++k) here[k] = sums[k / LIMBS].limbs[k % LIMBS];
+  const auto all = over_ranks(MPI_SUM, here, world);
+  for (size_t k = 0; k < N * LIMBS; ++k) sums[k / LIMBS].limbs[k % LIMBS] = all[k];
 }
 
 /// Sends each item to its rank, and returns the items received.

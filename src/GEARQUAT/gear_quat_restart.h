@@ -57,7 +57,7 @@ class Restart : protected Pointers {
   int place;
 
   static constexpr double MAGIC = 0x6765617271756174;    ///< "gearquat"
-  static constexpr double FORMAT = 9;
+  static constexpr double FORMAT = 10;
   static constexpr int HEAD = 2;    ///< of an atom: the count of numbers, and its ID
 
   std::vector<const double *> packed_atoms() const;

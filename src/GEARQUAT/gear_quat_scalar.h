@@ -4,7 +4,7 @@
 ------------------------------------------------------------------------- */
 
 /* A scalar y with the equation y' = rate that is integrated with the bodies: a Nordsieck history
-   with the values and coefficients of their momenta.  A coupling uses it for variables common to
+   with the values and coefficients of their momenta.  A bath uses it for variables common to
    all bodies, such as the heat removed by a thermostat. */
 
 #ifndef GEAR_QUAT_SCALAR_H
@@ -36,9 +36,7 @@ class ScalarHistory {
   /// Changes the step; ratio = new step / old step.
   void rescale(double ratio, int values) { Nordsieck<1>::rescale(rows.data(), values, ratio); }
 
-  /// Advances to the end of the step, where y' = rate.
-  void advance(const Integrator &integrator, double rate) { integrator.advance(rows.data(), rate); }
-  /// One step with the coefficients of a first-order equation.
+  /// One step with the coefficients of a first-order equation, to its end, where y' = rate.
   void advance(const double *coefficients, int values, double h, double rate)
   {
     Nordsieck<1>::predict(rows.data(), values);

@@ -24,7 +24,7 @@ using namespace GearQuat;
 
 void Start::add(Step &step, bool needed)
 {
-  if (needed && step.coupling) step.coupling->refer_to_box(h);
+  if (needed) step.bath.box.refer_to_box(h);
   starters.push_back(
       {step, needed, step.bodies.snapshot(), Column<Collocation::Workspace>(step.bodies)});
 }
@@ -117,7 +117,7 @@ struct Start::Search {
     for (auto &one : our.starters) {
       one.step.bodies.put_back_states(one.before);
       one.step.bodies.put_back_loads(one.before);
-      if (one.step.coupling) one.step.coupling->leave_nodes();
+      one.step.bath.box.leave_nodes();
     }
   }
 
@@ -131,10 +131,8 @@ struct Start::Search {
     put_back();
     for (auto &one : our.starters) {
       const Bodies &bodies = one.step.bodies;
-      if (one.step.coupling) {
-        one.step.coupling->measure();
-        one.step.coupling->begin_start(nodes());
-      }
+      one.step.bath.measure();
+      one.step.bath.begin_start(nodes());
       one.work.begin(bodies.nmoved());
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
         our.collocation.begin(bodies.rigid_of(ibody),
@@ -148,7 +146,7 @@ struct Start::Search {
   {
     for (auto &one : our.starters) {
       for (auto &work : one.work.all()) our.collocation.foretell(work);
-      if (one.step.coupling) one.step.coupling->foretell(nodes());
+      one.step.bath.foretell(nodes());
     }
   }
 
@@ -162,7 +160,7 @@ struct Start::Search {
       }
     for (auto &one : our.starters) {
       for (auto &work : one.work.all()) our.collocation.settle(pair, work);
-      if (one.step.coupling) one.step.coupling->settle(nodes(), pair);
+      one.step.bath.settle(nodes(), pair);
     }
     change = over_ranks(MPI_MAX, here, our.world);
     return true;
@@ -187,8 +185,8 @@ struct Start::Search {
       put_back();
       int vflag = 0;
       for (auto &one : our.starters) {
-        if (one.step.coupling) one.step.coupling->enter_probe(side);
-        if (one.step.coupling) vflag |= one.step.coupling->vflag();
+        one.step.bath.box.enter_probe(side);
+        vflag |= one.step.bath.box.vflag();
         one.step.ownership.spread_states();
         one.step.sites.place(true);
       }
@@ -196,9 +194,8 @@ struct Start::Search {
       ++our.evaluations;
       for (auto &one : our.starters) {
         one.step.sites.gather_loads(our.atom->f, our.atom->torque);
-        if (!one.step.coupling) continue;
-        one.step.coupling->meet_virial(our.atom->f);
-        one.step.coupling->leave_probe(side);
+        one.step.bath.box.measure_virial(our.atom->f);
+        one.step.bath.box.leave_probe(side);
       }
     }
   }
@@ -211,21 +208,19 @@ struct Start::Search {
       Bodies &bodies = one.step.bodies;
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
         bodies.change_state(ibody) = our.collocation.state_at(node, one.work[ibody], spacing);
-      if (one.step.coupling) one.step.coupling->enter_node(nodes(), node);
+      one.step.bath.box.enter_node(nodes(), node);
       one.step.ownership.spread_states();
       one.step.sites.place(true);
     }
     if (forces.largest_displacement() > 0.5 * skin) return false;
     int vflag = 0;
-    for (auto &one : our.starters)
-      if (one.step.coupling) vflag |= one.step.coupling->vflag();
+    for (auto &one : our.starters) vflag |= one.step.bath.box.vflag();
     forces.evaluate(0, vflag);
     ++our.evaluations;
     for (auto &one : our.starters) one.step.sites.gather_loads(our.atom->f, our.atom->torque);
     for (auto &one : our.starters) {
-      if (!one.step.coupling) continue;
-      one.step.coupling->meet_virial(our.atom->f);
-      one.step.coupling->visit_node(nodes(), node);
+      one.step.bath.box.measure_virial(our.atom->f);
+      one.step.bath.visit_node(nodes(), node);
     }
     for (auto &one : our.starters)
       for (int ibody = 0; ibody < one.step.bodies.nmoved(); ++ibody) {
@@ -245,7 +240,7 @@ StartFound Start::search(Forces &forces)
   forces.save();
   Search all(*this, forces);
   const bool coupled = std::any_of(starters.begin(), starters.end(), [](const Starter &one) {
-    return one.step.coupling != nullptr;
+    return one.step.bath.acts();
   });
   const StartFound start =
       find_start(most_values(), first_spacing(), all, coupled ? StartPlan::COUPLED : 0.0);
@@ -258,7 +253,7 @@ StartFound Start::search(Forces &forces)
                            start.change);
     seed_all(start);
     if (std::any_of(starters.begin(), starters.end(), [](const Starter &one) {
-          return one.step.coupling && one.step.coupling->probes();
+          return one.step.bath.box.moves();
         }))
       all.probe();
   }
@@ -309,8 +304,6 @@ void Start::seed_all(const StartFound &start)
       seed(one.step.scheme(), bodies.rigid_of(ibody),
            collocation.series(one.work[ibody], start.pairs), start.spacing, h,
            bodies.history(ibody));
-    if (one.step.coupling)
-      one.step.coupling->seed({collocation, start.spacing, h}, start.pairs,
-                              one.step.scheme().values());
+    one.step.bath.seed({collocation, start.spacing, h}, start.pairs, one.step.scheme().values());
   }
 }

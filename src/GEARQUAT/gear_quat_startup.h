@@ -53,7 +53,7 @@ class StartPlan {
   /// Pairs of nodes required by the order of a history with this number of rows.
   static int pairs_for(int values) { return (values + 1) / 2; }
 
-  /// slowest: a change becomes smaller at most by this factor in another evaluation.  With a coupling
+  /// slowest: a change becomes smaller at most by this factor in another evaluation.  With a bath
   /// the loads change its variables first, and these change the loads one evaluation later.
   explicit StartPlan(int values, double slowest = 0.0) :
       wanted(values), odd(values % 2), most(pairs_for(values)), slowest(slowest)

@@ -5,8 +5,6 @@
 
 #include "gear_quat_step.h"
 
-#include "gear_quat_barostat.h"
-#include "gear_quat_isokinetic.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 
@@ -49,42 +47,13 @@ static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-
 
 /* ---------------------------------------------------------------------- */
 
-/// With remembered loads the box and the limits of frictions are those of a constant order.
-static Scheme scheme_of_coupling(Scheme scheme)
-{
-  if (!scheme.remembers) return scheme;
-  scheme.formulation = Formulation::SECOND;
-  scheme.rows = SECOND_PAPER;
-  scheme.passes = 2;
-  return scheme;
-}
-
-/// The keywords exclude two couplings, and a coupling with a changing step if it does not support
-/// one.  Null for none.
-static std::unique_ptr<Coupling> make_coupling(LAMMPS *lmp, const Fix *fix, const Arguments &args,
-                                               Bodies &bodies, const Sites &sites)
-{
-  if (args.pressure.any())
-    return std::make_unique<Barostat>(lmp, fix, bodies, sites, args.thermostat, args.pressure,
-                                      scheme_of_coupling(args.scheme));
-  if (args.isokinetic != Isokinetic::NONE)
-    return std::make_unique<IsokineticConstraint>(lmp, bodies, args.scheme, args.isokinetic,
-                                                  args.rescale);
-  if (args.thermostat.damp > 0.0)
-    return std::make_unique<Thermostat>(lmp, fix, bodies, args.thermostat,
-                                        scheme_of_coupling(args.scheme));
-  return nullptr;
-}
-
 Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
            Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally) :
     Pointers(lmp),
-    fix(fix), args(args), ownership(ownership), time_step(lmp),
-    coupling(make_coupling(lmp, fix, args, bodies, sites)), fleet(fleet), bodies(bodies),
-    sites(sites), others(others), present(args.scheme), blowup(lmp, args, bodies, sites),
-    tally(std::move(tally))
+    fix(fix), args(args), ownership(ownership), time_step(lmp), bath(lmp, fix, args, bodies, sites),
+    fleet(fleet), bodies(bodies), sites(sites), others(others), present(args.scheme),
+    blowup(lmp, args, bodies, sites, bath), tally(std::move(tally))
 {
-  blowup.coupling = coupling.get();
   if (args.control.eps > 0.0)
     tolerance = std::make_unique<Tolerance>(lmp, fix, args.scheme, args.control, args.every_time,
                                             bodies, time_step);
@@ -161,9 +130,9 @@ void Step::impose_masks()
 void Step::begin_run()
 {
   const double h = length();
-  if (coupling) coupling->begin_run(!started, tolerance ? std::min(h, longest_step()) : h);
+  bath.begin_run(!started, tolerance ? std::min(h, bath.longest_step()) : h);
   if (tolerance) tolerance->announce_output();
-  if (update->nsteps > 0) look_at_rates(edge_by_loads(MotionSums::MOST_BY_MEAN), true);
+  if (update->nsteps > 0) look_at_rates(edge_by_loads(MotionSums::MOST_BY_MEAN));
   if (update->nsteps > 0 && !started) {    // before anything has changed
     find_limits(h);
     examine_all(atom->f);
@@ -177,7 +146,7 @@ void Step::end_run()
 {
   constexpr int SHORT = 100;
   if (started && update->nsteps >= SHORT) {
-    look_at_rates(edge_by_loads(MotionSums::LEAST_BY_MEAN), false);
+    look_at_rates(edge_by_loads(MotionSums::LEAST_BY_MEAN));
     warn_of_rates();
   }
   if (phase == Phase::ENDED) phase = Phase::BETWEEN;
@@ -188,10 +157,8 @@ void Step::take_velocities(bigint of_step, bool end)
   if (!others.any_taken()) return;
   const std::vector<int> changed = others.take_velocities(of_step, end);
   if (!started) return;
-  if (coupling) {
-    coupling->measure();
-    if (over_ranks(MPI_MAX, (int) !changed.empty(), world)) coupling->follow_velocities(length());
-  }
+  bath.measure();
+  if (over_ranks(MPI_MAX, (int) !changed.empty(), world)) bath.follow_velocities(length());
   for (const int ibody : changed)
     integrator->set_velocities(bodies.rigid_of(ibody), scaled(ibody), acting(ibody),
                                bodies.history(ibody));
@@ -219,7 +186,7 @@ void Step::start(double **f, double **torque)
   for (Step *one : fleet.members) {
     if (!one->tolerance) continue;
     one->started = !one->has_to_start(f);
-    if (!one->started) one->tolerance->begin(one->longest_step(), fleet.members.front()->fix);
+    if (!one->started) one->tolerance->begin(one->bath.longest_step(), fleet.members.front()->fix);
   }
   for (Step *one : fleet.members) {
     one->phase = Phase::READY;
@@ -229,7 +196,7 @@ void Step::start(double **f, double **torque)
       full.push_back(one);
       needed.push_back(needs);
     } else if (needs) {
-      if (one->coupling) one->coupling->refer_to_box(one->length());
+      one->bath.box.refer_to_box(one->length());
       one->seed_local(one->tolerance ? 3 : 2);
       one->note_start();
       if (one->tolerance) one->tolerance->warn_of_rounding();
@@ -264,7 +231,7 @@ const char *Step::reason_to_start_anew(double **f)
   if (!movers.empty() && movers != present_movers() && can_start_anew())
     return "other fixes move atoms than in the last steps";
   if (const char *other = another_scheme_suits()) return other;
-  const char *changed = coupling ? coupling->reason_to_start_anew() : nullptr;
+  const char *changed = bath.reason_to_start_anew();
   if (changed && (tolerance || (bootstraps() && forces_can_be_followed()))) return changed;
   return forces_changed(f) ? "forces have changed since the last step" : nullptr;
 }
@@ -281,8 +248,7 @@ std::string Step::present_movers() const
 /// True if a new start would be of full order, and would change only the histories.
 bool Step::can_start_anew() const
 {
-  return !tolerance && !(coupling && !coupling->may_start_anew()) && bootstraps() &&
-      forces_can_be_followed();
+  return !tolerance && bath.may_start_anew() && bootstraps() && forces_can_be_followed();
 }
 
 /// True if a start of full order can follow the forces, for all fixes together.
@@ -299,7 +265,7 @@ bool Step::forces_can_be_followed() const
 bool Step::forces_changed(double **f)
 {
   if (noise_of_forces(lmp, ownership).noise != Noise::NONE) return false;
-  if (coupling) coupling->measure();
+  bath.measure();
   double here[2] = {0.0, 0.0};    // error of the last step, force on an atom
   for (const Step *one : fleet.members)
     for (int ibody = 0; ibody < one->bodies.nowned(); ++ibody)
@@ -366,10 +332,8 @@ void Step::seed(int ibody, int terms)
 void Step::seed_local(int terms)
 {
   choose_scheme(sums_by_loads());
-  if (coupling) {
-    coupling->measure();
-    coupling->seed_local(length(), terms);
-  }
+  bath.measure();
+  bath.seed_local(length(), terms);
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) seed(ibody, terms);
 }
 
@@ -377,16 +341,16 @@ void Step::seed_local(int terms)
 void Step::note_start()
 {
   started = true;
-  look_at_rates(edge_of_start, true);
+  look_at_rates(edge_of_start);
   warn_of_rates();
   // an estimate for a blow-up
-  if (edge_of_start == 0.0) look_at_rates(edge_by_loads(MotionSums::MOST_BY_MEAN), true);
+  if (edge_of_start == 0.0) look_at_rates(edge_by_loads(MotionSums::MOST_BY_MEAN));
   if (tolerance) make_integrator();
 }
 
-double Step::element(int n) const
+double Step::element(int n)
 {
-  return n < of_tolerance() ? tolerance->element(n) : coupling->element(n - of_tolerance());
+  return n < of_tolerance() ? tolerance->element(n) : bath.element(n - of_tolerance());
 }
 
 /* ----------------------------------------------------------------------
@@ -441,7 +405,7 @@ void Step::fields(Fields &v)
 {
   v(time_step, edge_rate, movers, sites);
   if (tolerance) tolerance->fields(v);
-  if (coupling) coupling->fields(v);
+  bath.fields(v);
 }
 
 void Step::write(Fields &file)
@@ -580,15 +544,15 @@ void Step::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice
    the table of rates
 ------------------------------------------------------------------------- */
 
-/// The table for the present step.  edge: radians of vibrations in a step; ahead: with the friction
-/// expected in this run.  The coupling is first, because it also accelerates bodies.  Collective.
-void Step::look_at_rates(double edge, bool ahead)
+/// The table for the present step.  edge: radians of vibrations in a step.  The bath is first,
+/// because it also accelerates bodies.  Collective.
+void Step::look_at_rates(double edge)
 {
   if (tolerance) return;
   std::vector<Rate> &table = blowup.rates;
   table.clear();
   const double h = std::fabs(length());
-  if (coupling) table = coupling->rates(h, ahead);
+  table = bath.rates(h);
   const auto add = [&](const char *what, double radians, double limit, double advised) {
     table.push_back(
         {what, radians, limit,
@@ -656,7 +620,7 @@ void Step::begin(int vflag, double **f)
   vflag_of_step = vflag;
   others.check_velocities(phase == Phase::BETWEEN);    // in a run with `pre no` of all sites
   if (tolerance) tolerance->begin_step();
-  if (tolerance && coupling) coupling->keep();
+  if (tolerance) bath.keep();
   predict(f);
   place_prediction();
   phase = Phase::BEGUN;
@@ -669,7 +633,7 @@ void Step::end(double **f, double **torque)
   for (;;) {
     gather(f, torque);
     // here, since the atoms are at the positions of the forces
-    if (!coupling || coupling->others_ask_for_virial()) tally(vflag_of_step, f);
+    if (bath.box.others_ask_for_virial()) tally(vflag_of_step, f);
     correct(f);
     if (!tolerance || tolerance->accepts()) break;
     shorten();
@@ -686,12 +650,12 @@ void Step::end(double **f, double **torque)
 void Step::gather(double **f, double **torque)
 {
   sites.gather_loads(f, torque);
-  if (coupling) coupling->meet_virial(f);
+  bath.box.measure_virial(f);
 }
 
 void Step::choose_next()
 {
-  const double next = tolerance->choose(coupling ? coupling->longest_step() : HUGE_VAL);
+  const double next = tolerance->choose(bath.longest_step());
   make_integrator();
   time_step.change(next);
   adopt_length();
@@ -745,7 +709,7 @@ void Step::predict(double **f)
                            bodies.change_state(ibody), bodies.change_frame(ibody));
     check(ibody);
   }
-  if (coupling) coupling->predict(*integrator);
+  bath.predict(*integrator);
 }
 
 void Step::place_prediction()
@@ -756,13 +720,13 @@ void Step::place_prediction()
 
 void Step::correct(double **f)
 {
-  if (!coupling) {
+  if (!bath.acts()) {
     args.masks.empty() ? correct_bodies<false>(f) : correct_bodies<true>(f);
     return;
   }
   if (tolerance) tolerance->note_prediction();
-  coupling->correct(*integrator, scheme().coupled_passes());
-  if (tolerance) tolerance->note_correction(*integrator, *coupling);
+  bath.correct(*integrator, scheme().coupled_passes());
+  if (tolerance) tolerance->note_correction(*integrator, bath);
 }
 
 /// MASKED: some components of the loads are turned off.
@@ -802,28 +766,28 @@ template <bool MASKED, bool POINT, bool CHANGING> void Step::correct_body(int ib
 void Step::shorten()
 {
   bodies.put_back_histories();
-  if (coupling) coupling->put_back();
+  bath.put_back();
   tolerance->shorten_loads();
   make_integrator();
   tolerance->shorten_step();
   adopt_length();
   bodies.keep_histories();
-  if (coupling) coupling->keep();
+  bath.keep();
 }
 
 /// Histories of bodies inserted in this step start with the known derivatives.
 void Step::accept(double **f)
 {
   const double h = integrator->step();
-  if (tolerance || coupling) examine_all(f);    // otherwise correct_body() has done this
-  if (coupling) coupling->note_step(h);
+  if (tolerance || bath.acts()) examine_all(f);    // otherwise correct_body() has done this
+  bath.note_step(h);
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
     blowup.check_load(ibody, h, f);
     seed(ibody, known);
   }
   if (!bodies.fresh.empty()) bodies.take_in_fresh();
-  if (coupling) coupling->follow_changes(h);
+  bath.follow_changes(h);
 }
 
 /// Ends the run if the present loads would make a body unstable in the next step.
@@ -884,7 +848,7 @@ void Step::set_scheme(const Scheme &scheme)
   present = scheme;
   bodies.set_scheme(scheme);
   ownership.extended().set_scheme(scheme);
-  if (coupling) coupling->set_scheme(scheme);
+  bath.set_scheme(scheme);
   if (length() != 0.0) make_integrator();
 }
 
@@ -904,5 +868,5 @@ void Step::adopt_length()
   if (!started) return;
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
     integrator->rescale(bodies.history(ibody), ratio);
-  if (coupling) coupling->rescale(ratio);
+  bath.rescale(ratio);
 }

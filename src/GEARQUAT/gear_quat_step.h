@@ -18,13 +18,14 @@
                         place sites
      choose_next()      with a changing step, when all fixes have finished this one
 
-   A Step owns the length of the step, the integrator, the coupling of all bodies, the control of the
+   A Step owns the length of the step, the integrator, the bath of all bodies, the control of the
    error, and the limits beyond which a run ends. */
 
 #ifndef LMP_GEAR_QUAT_STEP_H
 #define LMP_GEAR_QUAT_STEP_H
 
 #include "gear_quat_arguments.h"
+#include "gear_quat_bath.h"
 #include "gear_quat_blowup.h"
 #include "gear_quat_fixes.h"
 #include "gear_quat_start.h"
@@ -113,12 +114,12 @@ class Step : protected Pointers {
 
   // elements of the fix's vector after the elements of Sums
 
-  int elements() const { return of_tolerance() + (coupling ? coupling->elements() : 0); }
-  double element(int n) const;
+  int elements() const { return of_tolerance() + (bath.elements()); }
+  double element(int n);
   /// 1 if an element is proportional to the number of bodies.
-  int extensive(int n) const { return coupling && coupling->extensive(n - of_tolerance()); }
+  int extensive(int n) const { return bath.extensive(n - of_tolerance()); }
   /// The energy that a thermostat has removed from the bodies.
-  double energy() const { return coupling ? coupling->energy() : 0.0; }
+  double energy() const { return bath.energy(); }
 
   // restart files
 
@@ -142,7 +143,7 @@ class Step : protected Pointers {
   Ownership &ownership;
   TimeStep time_step;
   std::unique_ptr<Tolerance> tolerance;    ///< null: the step is LAMMPS' own
-  std::unique_ptr<Coupling> coupling;      ///< null: bodies move by their own loads
+  Bath bath;
   std::vector<int> readers;       ///< periods of other fixes that read data at the end of a step
   bool velocities_read = true;    ///< by other styles, between begin() and end()
 
@@ -183,18 +184,13 @@ class Step : protected Pointers {
   void fields(Fields &v);
   int of_tolerance() const { return tolerance ? Tolerance::ELEMENTS : 0; }
 
-  /// The load on a body; with a coupling after its measure().
-  Load acting(int ibody) const { return acting_on(bodies, coupling.get(), ibody); }
+  /// The load on a body, after Bath::measure().
+  Load acting(int ibody) const { return bath.acting(ibody); }
   /// The state in the history of a body.
-  BodyState scaled(int ibody) const
-  {
-    return coupling ? coupling->scaled(bodies.state_of(ibody)) : bodies.state_of(ibody);
-  }
+  BodyState scaled(int ibody) const { return bath.box.scaled(bodies.state_of(ibody)); }
 
   // start
 
-  /// Positive; infinite if it is limited only by errors and dtmax.
-  double longest_step() const { return coupling ? coupling->longest_step() : HUGE_VAL; }
   /// True unless start zero or a tolerance is given: a start determines as many derivatives as it can.
   bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP && !tolerance; }
   static void start_together(const std::vector<Step *> &full, const std::vector<bool> &needed);
@@ -226,7 +222,7 @@ class Step : protected Pointers {
     return scene_of(here).choose(args.scheme).scheme;
   }
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
-  void look_at_rates(double edge, bool ahead);
+  void look_at_rates(double edge);
   double edge_by_loads(double by_mean) const;
   void warn_of_rates();
   const char *another_scheme_suits();

@@ -333,7 +333,7 @@ void Tolerance::note_prediction()
     predicted[ibody] = RememberedLoads::accelerations(bodies.history(ibody));
 }
 
-void Tolerance::note_correction(const Integrator &integrator, const Coupling &coupling)
+void Tolerance::note_correction(const Integrator &integrator, const Bath &bath)
 {
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list) {
@@ -345,7 +345,7 @@ void Tolerance::note_correction(const Integrator &integrator, const Coupling &co
                             predicted[ibody], bodies.history(ibody), change);
       include(control.counted(one, rounding(integrator, ibody, load)));
     }
-  coupling.errors(update->dt, integrator.values(), [this](const StepErrors &one) {
+  bath.errors(update->dt, integrator.values(), [this](const StepErrors &one) {
     include(one);
   });
 }

@@ -8,7 +8,7 @@
 
    When histories start: begin() and warn_of_rounding().
    In every step: begin_step(); prepare() before the prediction; correct() for every body, or
-   note_prediction() and note_correction() around the correction by a coupling; and accepts().  If a
+   note_prediction() and note_correction() around the correction by a bath; and accepts().  If a
    step is rejected, the caller restores the histories, calls shorten_loads() and shorten_step(), and
    repeats it.  At the end of the step: choose(), TimeStep::change(), and order_output().  After
    prepare(), shorten_loads() and choose() a new integrator is needed.  In addition,
@@ -27,7 +27,7 @@
 #ifndef LMP_GEAR_QUAT_TOLERANCE_H
 #define LMP_GEAR_QUAT_TOLERANCE_H
 
-#include "gear_quat_coupling.h"
+#include "gear_quat_bath.h"
 #include "gear_quat_forces.h"
 
 #include <memory>
@@ -120,7 +120,7 @@ class Tolerance : protected Pointers {
   // The same around a correction of all bodies together: of the predicted, then of the corrected
   // histories.
   void note_prediction();
-  void note_correction(const Integrator &integrator, const Coupling &coupling);
+  void note_correction(const Integrator &integrator, const Bath &bath);
   /// After all bodies are corrected: false if the step has failed and must be repeated.
   /// Collective.
   bool accepts();

@@ -21,8 +21,6 @@
 #include "modify.h"
 #include "pair.h"
 
-#include <algorithm>
-
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
@@ -108,13 +106,9 @@ void MolecularVirial::measure(double **f, double energy)
   ExactSum of_arms[6];
   const double scale = LARGE * ExactSum::scale_of(energy);
   sites.add_arm_virial(f, of_arms, scale);
-  bigint limbs[6 * ExactSum::LIMBS];
-  for (int k = 0; k < 6; ++k)
-    std::copy_n(of_arms[k].limbs, ExactSum::LIMBS, limbs + ExactSum::LIMBS * k);
-  const auto all_arms = over_ranks(MPI_SUM, limbs, world);
+  sum_over_ranks(of_arms, world);
   const auto all_styles = over_ranks(MPI_SUM, styles, world);
   for (int k = 0; k < 6; ++k) {
-    std::copy_n(all_arms.begin() + ExactSum::LIMBS * k, ExactSum::LIMBS, of_arms[k].limbs);
     virial[k] = all_styles[PLACES[k]] - of_arms[k].value(scale);
     if (force->kspace) virial[k] += force->kspace->virial[PLACES[k]];    // the sum over all ranks
     virial[k] /= force->mvv2e;

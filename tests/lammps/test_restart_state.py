@@ -160,9 +160,9 @@ NOT_IN_A_FILE = {
         STEP: "corrector to_trial of_fewer of_more lag lag_of_dropped",
     },
     "isokinetic IsokineticConstraint": {
-        COMMAND: "scheme mode scales",
-        RUN: "heat_at_nodes",
-        STEP: "here sums alpha of_all factor",
+        COMMAND: "mode scales",
+        OTHERS: "bodies",
+        STEP: "here sums alpha factor",
     },
     "tolerance Tolerance": {
         COMMAND: "control every_time",
@@ -172,21 +172,29 @@ NOT_IN_A_FILE = {
         STEP: "predicted errors speed begun_with tries failed fresh",
         MESSAGES: "warned_held told",
     },
-    "thermostat Thermostat": {
-        COMMAND: "words single_pass",
-        OTHERS: "fix",
-        DERIVED: "made waiting line damp_before freedoms total friction of_all",
-        RUN: "changes natoms twice_at_nodes held",
-        STEP: "kept twice strong unit here same_bodies",
+    "temperature Temperature": {
+        COMMAND: "subtracted stop of_bodies insertions of_pressure",
+        OTHERS: "fix bodies",
+        DERIVED: "line freedoms",
+        RUN: "constant stated outside of_total count_of mass changes natoms",
+        STEP: "twice tensor common energies momenta sums",
+    },
+    "bath Bath": {
+        COMMAND: "words values_of_heat single_pass",
+        OTHERS: "bodies",
+        DERIVED: "made xi of_all",
+        RUN: "at_nodes held",
+        STEP: "kept kept_heat coefficients_of_heat strong same_bodies pending",
         MESSAGES: "told warned",
     },
     "barostat Barostat": {
-        COMMAND: "asked values_of_heat changing_step",
-        DERIVED: "matrix rate of_all inverse",
-        RUN: "made_target made_rate longest_body strongest begun_box begun_matrix drive_of_smaller "
-        "cell_at_nodes twice_box_at_nodes heat_at_nodes held_box target_at_start",
-        STEP: "kept local_error kinetic friction_of_box tensor heat_coefficients",
-        MESSAGES: "told_of_box warned_mesh",
+        COMMAND: "asked is_asked changing_step",
+        OTHERS: "fix bodies temperature",
+        DERIVED: "matrix rate of_bodies inverse",
+        RUN: "longest_body strongest begun_box begun_matrix drive_of_smaller "
+        "cell_at_nodes held target_at_start time_of_node",
+        STEP: "kept local_error xi",
+        MESSAGES: "told warned_mesh",
     },
     "sites Sites": {
         OTHERS: "bodies ownership extended",

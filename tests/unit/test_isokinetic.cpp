@@ -151,7 +151,7 @@ struct Host {
         integrator.correct_pass(bodies[b], loads[b], Friction(alpha), rows[b].data(), pending[b]);
     }
     const KineticSums found = pending_sums(loads, pending);
-    heat.advance(integrator, found.power());
+    heat.advance(CorrectorCoefficients(scheme).c.data(), scheme.values(), h, found.power());
     const Multipliers factor = scale_factors(mode, target, found);
     for (size_t b = 0; b < bodies.size(); ++b) {
       integrator.finish(bodies[b], loads[b], rows[b].data(), pending[b]);

@@ -25,7 +25,7 @@ TEMP = "temp 300.0 300.0 0.1"
 #: functions that solve a chain once per step: their instructions depend on the motion, not on the number of bodies
 ONCE_A_STEP = r"GearQuat::Chain(Drive)?::"
 #: functions that correct all bodies together
-TOGETHER = r"|GearQuat::(Step::correct_together|Coupling::correct_by_passes<)"
+TOGETHER = r"|GearQuat::(Step::correct_together|Bath::(correct|add|find_friction)\\()"
 SET = "set group all"
 PERIODIC = replace(FULL, boundary="p p p")
 UNSIZED, SIZED = (
@@ -118,7 +118,7 @@ EFFECTS = (
         moved(words=FIRST),
         own=r"GearQuat::IsokineticConstraint::" + TOGETHER,
     ),
-    Effect("temp", moved(words=TEMP), MOVED, own=r"GearQuat::(Thermostat|TotalMomentum)::" + TOGETHER),
+    Effect("temp", moved(words=TEMP), MOVED, own=r"GearQuat::Temperature::" + TOGETHER),
     Effect("compensated sums", moved(words="compensate yes"), MOVED),
 )
 

@@ -1,0 +1,613 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_bath.h"
+
+#include "gear_quat_limits.h"
+#include "gear_quat_ranks.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+// damping times of fewer steps are warned of
+
+static constexpr double FEWEST_STEPS = 10.0;
+
+// the strongest friction that bodies follow, times the step; the part of it that a changing step
+// permits; and a weaker friction is as accurate if it is explicit
+
+static constexpr double STRONGEST = 0.5, SAFE = 0.8, STRONG = 1.0e-3;
+
+// a part of the kinetic energy that stays below this fraction of its target for this many damping
+// times will not become warm: a separate chain increases it by several powers of ten in that time
+
+static constexpr double COLD = 0.01, COLD_TIMES = 10.0;
+
+// targets that differ by less than this are equal up to rounding
+
+static constexpr double ROUNDING = 1.0e-12;
+
+// a common motion of all bodies with less kinetic energy than this, in kT, is not reported
+
+static constexpr double TOLD_MOTION = 0.01;
+
+static constexpr auto TRANSLATION = Temperature::TRANSLATION, ROTATION = Temperature::ROTATION;
+
+/* ---------------------------------------------------------------------- */
+
+/// With remembered loads the box is that of a constant order.
+static Scheme scheme_of_bath(Scheme scheme)
+{
+  if (!scheme.remembers) return scheme;
+  scheme.formulation = Formulation::SECOND;
+  scheme.rows = SECOND_PAPER;
+  scheme.passes = 2;
+  return scheme;
+}
+
+Bath::Bath(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, const Sites &sites) :
+    Pointers(lmp), temperature(lmp, fix, bodies, args.thermostat, args.pressure),
+    box(lmp, fix, bodies, sites, args.pressure, temperature), bodies(bodies),
+    words(args.thermostat), chains(words.damp > 0.0 ? 1 + words.separate : 0, Chain(words.length)),
+    isokinetic(lmp, bodies, args.isokinetic, args.rescale), pending(bodies)
+{
+  set_scheme(scheme_of_bath(args.scheme));
+}
+
+void Bath::set_scheme(const Scheme &scheme)
+{
+  single_pass = scheme.coupled_passes() == 1;
+  Scheme of_heat;
+  of_heat.formulation = Formulation::FIRST;
+  of_heat.rows = values_of_heat = isokinetic.acts() ? scheme.values()
+                                                    : Barostat::values_of_scalar(scheme);
+  coefficients_of_heat = CorrectorCoefficients(of_heat).c;
+  box.set_scheme(scheme);
+}
+
+/* ----------------------------------------------------------------------
+   chains
+------------------------------------------------------------------------- */
+
+double Bath::of_chain(int chain, const double (&parts)[2]) const
+{
+  return words.separate ? parts[chain] : parts[TRANSLATION] + parts[ROTATION];
+}
+
+ChainTarget Bath::target_of(int chain, double steps_ahead, double h) const
+{
+  return temperature.target(of_chain(chain, temperature.freedoms), words.damp, steps_ahead, h);
+}
+
+double Bath::strongest_friction() const
+{
+  double strongest = 0.0;
+  for (const auto &chain : chains) strongest = std::max(strongest, std::fabs(chain.friction()));
+  return strongest;
+}
+
+/// A non-finite kinetic energy is due to an unstable body, which ends the run.
+void Bath::advance(int chain, double twice_kinetic, double h, int values)
+{
+  if (!std::isfinite(twice_kinetic)) return;
+  const ChainTarget target = target_of(chain, -1.0, h);
+  if (chains[chain].advance(target, twice_kinetic, h, values)) return;
+  const double degree = force->mvv2e / force->boltz;
+  error->all(FLERR,
+             "Fix gear/quat temp: in step {} the bodies have a temperature of {:.4g}, {:.3g} times "
+             "the target, and the thermostat cannot follow it; begin nearer to the target, or use "
+             "a longer damping time than {:g}",
+             update->ntimestep, degree * twice_kinetic / target.freedoms,
+             twice_kinetic / (target.freedoms * target.kt), words.damp);
+}
+
+/* ----------------------------------------------------------------------
+   before a run
+------------------------------------------------------------------------- */
+
+void Bath::begin_run(bool anew, double h)
+{
+  if (isokinetic.acts()) isokinetic.begin_run(anew);
+  if (isokinetic.acts() || !acts()) return;
+  box.refuse_scene();
+  temperature.begin_run(anew, made.line);
+  note_friction();
+  if (!chains.empty()) {
+    refuse_bodies();
+    tell_freedoms();
+    // a single pass uses only the predicted friction; tolerance limits a step to exactly this many
+    const double fewest = (single_pass ? 2.0 : 1.0) * FEWEST_STEPS;
+    if (words.damp < (1.0 - ROUNDING) * fewest * std::fabs(h) && comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix gear/quat temp: a damping time of {:.3g} is less than {:.0f} time steps, and "
+          "the motion may become unstable",
+          words.damp, fewest);
+  }
+  box.begin_run(anew, h);
+}
+
+void Bath::refuse_bodies() const
+{
+  tagint partly = 0;    // space-frame components of a torque are no part of the rotational energy
+  for (int ibody = 0; domain->dimension == 3 && ibody < bodies.nowned(); ++ibody) {
+    const Body &body = bodies.body_at(ibody);
+    const Mask off = body.off & Temperature::NO_TORQUE;
+    if (off && off != Temperature::NO_TORQUE && body.rigid.rotational_freedoms() > 0)
+      partly = body.id;
+  }
+  partly = over_ranks(MPI_MAX, partly, world);
+  if (partly)
+    error->all(FLERR,
+               "Fix gear/quat temp: keyword torque turns off some components for body {} and not "
+               "all, so its rotation has no temperature; turn off all three, or define a second "
+               "fix without temp for such bodies",
+               partly);
+  if (words.may_wait && bodies.number() == 0) return;
+  if (!temperature.has_translation() && temperature.freedoms[ROTATION] == 0.0)
+    error->all(FLERR,
+               "Fix gear/quat temp: keywords force and torque turn off all degrees of freedom of "
+               "the bodies, so they have no temperature");
+  if (temperature.freedoms[TRANSLATION] < 0.0)
+    error->all(FLERR,
+               "Fix gear/quat temp: fix_modify extra/dof subtracts more degrees of freedom of "
+               "translation than the bodies have");
+}
+
+void Bath::tell_freedoms()
+{
+  std::string now = fmt::format(
+      "thermostat of {:.0f} degrees of freedom of translation{} and {:.0f} of rotation",
+      temperature.freedoms[TRANSLATION], temperature.description(), temperature.freedoms[ROTATION]);
+  const double common = temperature.common_energy();
+  if (common > TOLD_MOTION)
+    now += fmt::format("; the bodies move together with a kinetic energy of {:.3g} kT, which is "
+                       "not part of their temperature: velocity zero linear removes it",
+                       common);
+  temperature.tell_once(told, now);
+}
+
+const char *Bath::reason_to_start_anew() const
+{
+  if (isokinetic.acts() || !acts()) return nullptr;
+  const auto &line = temperature.line;
+  const auto differs = [&line](double a, double b) {
+    return std::fabs(a - b) > ROUNDING * line.kt;
+  };
+  if (differs(made.line.kt, line.kt) || differs(made.line.kt_step, line.kt_step) ||
+      !std::equal(made.freedoms, made.freedoms + 2, temperature.freedoms) ||
+      made.damp != words.damp)
+    return "the thermostat has another target, or other degrees of freedom, than in the last steps";
+  return box.reason_to_start_anew();
+}
+
+/* ----------------------------------------------------------------------
+   the friction
+------------------------------------------------------------------------- */
+
+void Bath::note_friction()
+{
+  for (size_t c = 0; c < chains.size(); ++c) xi[c] = chains[c].friction();
+  share_friction();
+}
+
+void Bath::share_friction()
+{
+  of_all = isokinetic.acts() ? isokinetic.multipliers()
+                             : Multipliers{xi[TRANSLATION], xi[words.separate ? ROTATION : 0]};
+  of_all.implicit = strong;
+  std::copy_n(temperature.common, 3, of_all.common);
+}
+
+Friction Bath::friction_of(int ibody) const
+{
+  Friction found = of_all;
+  for (int k = 0; k < 3; ++k)
+    if (!temperature.has(ibody, TRANSLATION, k)) found.translation[k] = 0.0;
+  if (!temperature.has(ibody, ROTATION)) found.rotation = 0.0;
+  return found;
+}
+
+void Bath::measure()
+{
+  if (isokinetic.acts())
+    isokinetic.sum_present();
+  else if (acts())
+    temperature.sum_present();
+  note_friction();
+  box.measure(of_all);
+}
+
+Load Bath::acting(int ibody) const
+{
+  if (!acts()) return bodies.acting(ibody);
+  const RigidBody &rigid = bodies.rigid_of(ibody);
+  const BodyState &state = bodies.state_of(ibody);
+  if (box.moves())
+    return damped_load(rigid, box.scaled(state), box.scaled(bodies.load_of(ibody)), box.friction());
+  return damped_load(rigid, state, bodies.acting(ibody), friction_of(ibody));
+}
+
+/* ----------------------------------------------------------------------
+   a step
+------------------------------------------------------------------------- */
+
+void Bath::predict(const Integrator &integrator)
+{
+  if (!box.moves()) return;
+  box.predict(integrator.step());
+  box.choose_coefficients(coefficients_of_heat, values_of_heat);
+}
+
+void Bath::correct(const Integrator &integrator, int passes)
+{
+  const double h = integrator.step();
+  const auto for_moved = [this](auto act) {
+    for (const auto *list : {&bodies.points, &bodies.tops})
+      for (const int ibody : *list) act(ibody);
+  };
+  begin_passes(h);
+  for_moved([&](int ibody) {
+    pending[ibody] =
+        integrator.begin(bodies.acting(ibody), bodies.axes(ibody), bodies.history(ibody));
+    const BodyState &s = bodies.state_of(ibody);
+    if (ibody < bodies.nowned()) add(ibody, s.velocity, s.omega_body, pending[ibody]);
+  });
+
+  for (int pass = 0; pass < passes; ++pass) {
+    find_friction(integrator);
+    const bool sums = isokinetic.acts() || pass + 1 < passes;
+    for_moved([&](int ibody) {
+      const RigidBody &rigid = bodies.rigid_of(ibody);
+      double *rows = bodies.history(ibody), velocity[3], omega_body[3];
+      const auto correct_pass = [&](const Load &load, const auto &friction) {
+        integrator.correct_pass(rigid, load, friction, rows, pending[ibody]);
+      };
+      if (box.moves())
+        correct_pass(box.scaled(bodies.load_of(ibody)), box.friction());
+      else if (bodies.body_at(ibody).off == 0)
+        correct_pass(bodies.load_of(ibody), of_all);
+      else
+        correct_pass(bodies.acting(ibody), friction_of(ibody));
+      if (ibody >= bodies.nowned() || !sums) return;
+      integrator.velocities_of_pass(rigid, rows, pending[ibody], velocity, omega_body);
+      if (box.moves()) box.to_space(velocity);
+      add(ibody, velocity, omega_body, pending[ibody]);
+    });
+  }
+  end_passes(h);
+
+  for_moved([&](int ibody) {
+    const RigidBody &rigid = bodies.rigid_of(ibody);
+    double *rows = bodies.history(ibody);
+    BodyState &state = bodies.change_state(ibody);
+    Correction &last = bodies.change_last(ibody);
+    const bool masked = bodies.body_at(ibody).off != 0;
+    const BodyState before = masked ? state : BodyState();
+    last = integrator.finish(rigid, bodies.acting(ibody), rows, pending[ibody]);
+    isokinetic.scale(integrator, rigid, rows);
+    integrator.body_state(rigid, rows, state, bodies.change_frame(ibody));
+    if (box.moves()) box.place(bodies.load_of(ibody).force, pending[ibody].x, state, last);
+    if (masked) last.work = work_between(bodies.load_of(ibody), before, state);
+  });
+  box.end_step();
+}
+
+void Bath::note_setting()
+{
+  const auto &freedoms = temperature.freedoms;
+  made = {temperature.line, {freedoms[TRANSLATION], freedoms[ROTATION]}, words.damp};
+}
+
+void Bath::begin_passes(double h)
+{
+  pending.begin(bodies.nmoved());
+  if (isokinetic.acts()) return;
+  same_bodies = temperature.is_counted();
+  temperature.aim(update->ntimestep);
+  temperature.begin();
+  note_setting();
+  strong = std::fabs(h) * strongest_friction() > STRONG;
+  box.begin_passes(h);
+}
+
+void Bath::add(int ibody, const double *velocity, const double *omega_body,
+               const Integrator::Pending &pending)
+{
+  if (isokinetic.acts())
+    isokinetic.add(ibody, velocity, omega_body, pending.torque_body);
+  else
+    temperature.add(ibody, velocity, omega_body);
+}
+
+void Bath::find_friction(const Integrator &integrator)
+{
+  const int values = integrator.values();
+  const double h = integrator.step();
+  isokinetic.acts() ? isokinetic.sum() : temperature.sum();
+  for (size_t c = 0; c < chains.size(); ++c)
+    advance(c, same_bodies ? twice_of(c) : chains[c].foretold(h, values), h, values);
+  note_friction();
+  box.pass(of_all, h, values);
+}
+
+void Bath::end_passes(double h)
+{
+  const double removed = isokinetic.acts() ? isokinetic.end_passes() : 0.0;
+  for (auto &chain : chains) chain.conclude();
+  box.end_passes();
+  const double rate = isokinetic.acts() ? isokinetic.power() : box.rate_of_heat();
+  heat.advance(coefficients_of_heat.data(), values_of_heat, h, rate);
+  heat.add(removed);
+}
+
+void Bath::note_step(double h)
+{
+  box.note_step(h);
+  if (chains.empty()) return;
+  for (const auto part : {TRANSLATION, ROTATION}) {
+    const bool is_cold =
+        temperature.twice[part] < COLD * temperature.freedoms[part] * temperature.line.kt;
+    cold[part] = is_cold ? cold[part] + std::fabs(h) : 0.0;
+    if (warned[part] || cold[part] < COLD_TIMES * words.damp) continue;
+    warned[part] = true;
+    if (comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix gear/quat temp: until step {} the {} kinetic energy of the bodies was below {:g} "
+          "% of its target for {:g} damping times; a thermostat only scales it, so bodies that "
+          "hardly {} stay cold for a long time; velocity create gives them velocities between "
+          "runs",
+          update->ntimestep, part == ROTATION ? "rotational" : "translational", 100.0 * COLD,
+          COLD_TIMES, part == ROTATION ? "rotate" : "move");
+  }
+}
+
+/// The mass of the box changes with the degrees of freedom.
+void Bath::follow_changes(double h)
+{
+  if (isokinetic.acts() || !acts() || temperature.is_counted()) return;
+  std::vector<ChainTarget> before;
+  for (size_t c = 0; c < chains.size(); ++c) before.push_back(target_of(c, 0.0, h));
+  const double of_box = box.twice_kinetic();
+  temperature.count();
+  temperature.sum_present();
+  note_setting();
+  for (size_t c = 0; c < chains.size(); ++c)
+    chains[c].join(before[c], target_of(c, 0.0, h), twice_of(c));
+  heat.add(0.5 * (of_box - box.twice_kinetic()));
+}
+
+void Bath::follow_velocities(double h)
+{
+  if (isokinetic.acts() || !acts()) return;
+  measure();
+  for (size_t c = 0; c < chains.size(); ++c) {
+    const ChainTarget target = target_of(c, 0.0, h);
+    chains[c].join(target, target, twice_of(c));
+  }
+}
+
+void Bath::keep()
+{
+  kept = chains;
+  kept_heat = heat;
+  box.keep();
+}
+
+void Bath::put_back()
+{
+  chains = kept;
+  heat = kept_heat;
+  box.put_back();
+}
+
+void Bath::rescale(double ratio)
+{
+  heat.rescale(ratio, values_of_heat);
+  box.rescale(ratio);
+}
+
+/* ----------------------------------------------------------------------
+   limits of the step
+------------------------------------------------------------------------- */
+
+double Bath::longest_step() const
+{
+  double longest = box.longest_step();
+  if (chains.empty()) return longest;
+  const double strongest = strongest_friction();
+  if (strongest > 0.0) longest = std::min(longest, SAFE * STRONGEST / strongest);
+  return std::min(longest, words.damp / FEWEST_STEPS);
+}
+
+/// The effect of the errors of the chains in this step on bodies in thermal motion: an error d of
+/// the friction causes the error h d v of a velocity v.  A cold body is insensitive to the friction,
+/// so its errors do not show whether the chains are accurate.
+void Bath::errors(double h, int values, const Include &include) const
+{
+  const int terms = std::min(values, SECOND_MOST);
+  const double kt = temperature.line.kt;
+  double most = 0.0;
+  for (size_t c = 0; c < chains.size(); ++c)
+    most = std::max(most, chains[c].left_out(target_of(c, 0.0, h), h, terms));
+  most *= (double) adams_moulton(terms);
+  StepErrors found;
+  found.energy = std::fabs(h) * 3.0 * kt * most;
+  for (int ibody = 0; ibody < bodies.nmoved() && !chains.empty(); ++ibody) {
+    found.length = h * h * std::sqrt(3.0 * kt / bodies.rigid_of(ibody).mass) * most;
+    include(found);
+  }
+  if (box.moves()) include(box.errors(h));
+}
+
+std::vector<Rate> Bath::rates(double h) const
+{
+  std::vector<Rate> table;
+  const double found = std::fabs(h) * strongest_friction();
+  const double period = std::max(FEWEST_STEPS * std::fabs(h), 2.0 * words.damp * found / STRONGEST);
+  if (!chains.empty())
+    table.push_back({"the friction of the thermostat is", found, STRONGEST,
+                     fmt::format("use a damping time of {:g} or longer", rounded_up(period))});
+  box.add_rate(h, table);
+  return table;
+}
+
+/* ----------------------------------------------------------------------
+   the start
+------------------------------------------------------------------------- */
+
+std::vector<double> Bath::rates_of_unknowns() const
+{
+  std::vector<double> found;
+  for (size_t c = 0; c < chains.size(); ++c) found.push_back(twice_of(c));
+  if (isokinetic.acts()) found.push_back(isokinetic.power());
+  if (box.moves()) found.insert(found.end(), {box.rate_of_heat(), box.twice_kinetic()});
+  return found;
+}
+
+void Bath::begin_start(const StartNodes &nodes)
+{
+  held.clear();
+  for (size_t c = 0; c < chains.size(); ++c)
+    held.push_back(chains[c].is_stiff(target_of(c, 0.0, nodes.h), twice_of(c), nodes.h,
+                                      nodes.collocation.pairs()));
+  box.begin_start(nodes);
+  at_nodes.clear();
+  for (const double rate : rates_of_unknowns())
+    nodes.collocation.begin(0.0, rate, at_nodes.emplace_back());
+}
+
+void Bath::foretell(const StartNodes &nodes)
+{
+  for (auto &one : at_nodes) nodes.collocation.foretell(one);
+  box.foretell(nodes);
+}
+
+void Bath::visit_node(const StartNodes &nodes, int node)
+{
+  if (isokinetic.acts())
+    isokinetic.sum_present();
+  else if (acts())
+    temperature.sum_present();
+  for (size_t c = 0; c < chains.size(); ++c)
+    if (!held[c])
+      xi[c] = chains[c]
+                  .flow(target_of(c, 0.0, nodes.h), drive_of(nodes.collocation, at_nodes[c]),
+                        nodes.spacing, node)
+                  .y[0];
+  share_friction();
+  if (box.moves()) box.visit_node(nodes, node, at_nodes.back(), of_all);
+  const auto now = rates_of_unknowns();
+  for (size_t k = 0; k < now.size(); ++k) nodes.collocation.set_rate(node, now[k], at_nodes[k]);
+}
+
+void Bath::settle(const StartNodes &nodes, int pair)
+{
+  for (auto &one : at_nodes) nodes.collocation.settle(pair, one);
+  box.settle(nodes, pair);
+}
+
+void Bath::seed(const StartNodes &nodes, int pairs, int values)
+{
+  for (size_t c = 0; c < chains.size(); ++c)
+    chains[c].seed(nodes.collocation.rate_at_start(at_nodes[c]), pairs, nodes.spacing, values + 1);
+  if (at_nodes.size() > chains.size()) {
+    double series[Collocation::MAX_NODES + 1];
+    const int terms =
+        nodes.collocation.series(at_nodes[chains.size()], pairs, nodes.spacing, series);
+    heat.seed(series, terms, nodes.spacing, nodes.h, values_of_heat);
+  }
+  if (box.moves()) box.seed(nodes, pairs, values, at_nodes.back());
+}
+
+void Bath::seed_local(double h, int terms)
+{
+  for (size_t c = 0; c < chains.size(); ++c) {
+    const double now = twice_of(c);
+    chains[c].seed(&now, 0, 0.0, 1);
+  }
+  box.seed_local(h, terms);
+  const double series[2] = {0.0, h * (isokinetic.acts() ? isokinetic.power() : box.rate_of_heat())};
+  heat.seed(series, 2, h, h, values_of_heat);
+}
+
+/* ----------------------------------------------------------------------
+   outputs and restart
+------------------------------------------------------------------------- */
+
+int Bath::elements() const
+{
+  if (isokinetic.acts()) return ELEMENTS_OF_ISOKINETIC;
+  return !acts() ? 0 : ELEMENTS + (box.moves() ? (int) Barostat::ELEMENTS : 0);
+}
+
+bool Bath::extensive(int n) const
+{
+  return n == 0 || n == ELEMENTS + Barostat::E_BOX;    // HEAT or ENERGY
+}
+
+double Bath::energy() const
+{
+  double sum = 0.0;
+  for (size_t c = 0; c < chains.size(); ++c) sum += chains[c].energy(target_of(c, 0.0, 0.0));
+  sum *= force->mvv2e;
+  return box.moves() ? sum + box.energy(heat.value()) * force->mvv2e : sum;
+}
+
+double Bath::element(int n)
+{
+  if (isokinetic.acts()) {
+    const Multipliers &alpha = isokinetic.multipliers();
+    return n == HEAT             ? heat.value() * force->mvv2e
+        : n == ALPHA_TRANSLATION ? alpha.translation
+                                 : alpha.rotation;
+  }
+  const double degree = force->mvv2e / force->boltz;
+  const auto degrees = [&](int part) {
+    temperature.sum_present();
+    const double freedoms = temperature.freedoms[part];
+    return freedoms > 0.0 ? degree * temperature.twice[part] / freedoms : 0.0;
+  };
+  switch (n) {
+    case ENERGY:
+      return energy();
+    case T_TRANSLATION:
+      return degrees(TRANSLATION);
+    case T_ROTATION:
+      return degrees(ROTATION);
+    case TARGET:
+      return degree * temperature.line.kt;
+    case XI_TRANSLATION:
+      return xi[TRANSLATION];
+    case XI_ROTATION:
+      return xi[words.separate ? ROTATION : TRANSLATION];
+    default:
+      if (n - ELEMENTS < Barostat::P_TARGET) temperature.sum_present();
+      return box.element(n - ELEMENTS);
+  }
+}
+
+void Bath::fields(Fields &v)
+{
+  if (isokinetic.acts()) v(isokinetic, heat);
+  if (isokinetic.acts() || !acts()) return;
+  v(chains, cold, made, temperature);
+  if (box.moves()) v(box, heat);
+  if (!v.reads()) return;
+  temperature.line = made.line;
+  std::copy_n(made.freedoms, 2, temperature.freedoms);
+  note_friction();
+}

@@ -1,0 +1,176 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* What acts on all bodies of a fix together, by a friction that depends on sums over all of them:
+
+     keyword temp          Nose-Hoover chains (gear_quat_chain.h), driven by the temperature
+     keyword isokinetic    Gauss's principle (gear_quat_isokinetic.h)
+     keywords of pressure  a box that moves (gear_quat_barostat.h), with chains or without
+
+   Without these keywords acts() is false, and bodies move by their own loads.
+
+   Every step correct() corrects the predicted histories and states of all bodies: in every pass of
+   the corrector the sums determine the friction, and the friction determines the next velocities and
+   sums.  Bodies may start from rest: the friction of a chain is negative until forces have moved
+   them.  When bodies come or go, chains are predicted and not corrected, and receive their new
+   derivatives at the end of the step.
+
+   The start finds histories by collocation (gear_quat_startup.h).  It calls either seed_local()
+   alone, or begin_start(); for every pair of nodes foretell(), visit_node() at both nodes and
+   settle(); and seed() at the end.
+
+   Functions are collective unless they say otherwise. */
+
+#ifndef LMP_GEAR_QUAT_BATH_H
+#define LMP_GEAR_QUAT_BATH_H
+
+#include "gear_quat_arguments.h"
+#include "gear_quat_barostat.h"
+#include "gear_quat_isokinetic.h"
+#include "gear_quat_scalar.h"
+#include "gear_quat_temperature.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS::GearQuat {
+
+class Bath : protected Pointers {
+  Temperature temperature;
+
+ public:
+  Barostat box;
+
+  Bath(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, const Sites &sites);
+
+  bool acts() const { return !chains.empty() || isokinetic.acts() || box.moves(); }
+  /// False if its variables would be lost in a start.
+  bool may_start_anew() const { return !isokinetic.acts(); }
+
+  // before a run
+
+  /// States and loads belong to the first step, of length h; LAMMPS' setup may not have evaluated
+  /// the forces of all fixes yet.  anew: there are no histories.  Ends the run if the keywords
+  /// cannot act on these bodies.
+  void begin_run(bool anew, double h);
+  /// The scheme of the bodies has changed; there are no histories.  Local.
+  void set_scheme(const Scheme &scheme);
+  /// fix_modify extra/dof: degrees of freedom of translation that do not count.  Local.
+  void subtract(int freedoms) { temperature.subtracted = freedoms; }
+  /// A reason for a new start of histories, null for none.
+  const char *reason_to_start_anew() const;
+
+  // in a step
+
+  /// Histories are predicted.
+  void predict(const Integrator &integrator);
+  /// Computes friction and rates from the present states and loads.
+  void measure();
+  /// The load on a body, including the friction; to be called after measure().  Local.
+  Load acting(int ibody) const;
+  /// Corrects the predicted histories and states.
+  void correct(const Integrator &integrator, int passes);
+  /// The step of length h is accepted.  Warns once of bodies that a thermostat cannot warm.
+  void note_step(double h);
+  /// Called in an accepted step, after insertions have histories and removals are complete.
+  void follow_changes(double h);
+  /// Other fixes have changed velocities of bodies.
+  void follow_velocities(double h);
+  /// Saves variables for a step that may be undone; put_back() restores them.  Local.
+  void keep();
+  void put_back();
+  /// The step of the histories changes.  Local.
+  void rescale(double ratio);
+  /// Longest next step; infinite for no limit.  Local.
+  double longest_step() const;
+  /// Calls `include` with the errors in this step of h.  Local.
+  using Include = std::function<void(const StepErrors &)>;
+  void errors(double h, int values, const Include &include) const;
+  /// Rows of the table of rates, for steps of h.  Local.
+  std::vector<Rate> rates(double h) const;
+
+  // the start
+
+  void begin_start(const StartNodes &nodes);
+  void foretell(const StartNodes &nodes);    ///< local
+  /// Computes friction and rates from the states and loads of a node, like measure().
+  void visit_node(const StartNodes &nodes, int node);
+  void settle(const StartNodes &nodes, int pair);    ///< local
+  /// Makes histories from the innermost `pairs`.  values: of the method.  Local.
+  void seed(const StartNodes &nodes, int pairs, int values);
+  /// Makes histories from the present alone, after measure(), with `terms` terms for bodies.
+  void seed_local(double h, int terms);
+
+  // elements of the fix's vector
+
+  int elements() const;
+  double element(int n);
+  /// True if the element is proportional to the number of bodies.
+  bool extensive(int n) const;
+  /// The energy that chains and box have taken from the bodies.  Local.
+  double energy() const;
+
+  void fields(Fields &v);
+
+ private:
+  /// Elements of the fix's vector after the elements of Sums and Tolerance; with isokinetic:
+  enum { HEAT, ALPHA_TRANSLATION, ALPHA_ROTATION, ELEMENTS_OF_ISOKINETIC };
+  /// Otherwise, before those of a moving box:
+  enum { ENERGY, T_TRANSLATION, T_ROTATION, TARGET, XI_TRANSLATION, XI_ROTATION, ELEMENTS };
+
+  Bodies &bodies;
+  ThermostatWords words;
+  std::vector<Chain> chains, kept;    ///< of both parts, or one for both
+  IsokineticConstraint isokinetic;
+  ScalarHistory heat, kept_heat;    ///< removed by isokinetic, or S of the box
+  int values_of_heat = 0;
+  CorrectorCoefficients::Array coefficients_of_heat;    ///< of a first-order equation
+
+  struct Setting {    ///< of a step
+    Temperature::Line line;
+    double freedoms[2], damp;
+    template <class V> void fields(V &v) { v(line, freedoms, damp); }
+  };
+  Setting made = {};                      ///< of the last step
+  bool single_pass = false;               ///< of the corrector
+  bool strong = false;                    ///< the friction of this step is taken implicitly
+  bool same_bodies = true;                ///< no insertion or removal in this step
+  double xi[2] = {};                      ///< xi_1 of the chains
+  Friction of_all;                        ///< of a body without masks, in the current pass
+  double cold[2] = {};                    ///< time that the parts have been cold
+  bool warned[2] = {};                    ///< of that
+  std::string told;                       ///< last message of the degrees of freedom
+  Column<Integrator::Pending> pending;    ///< in correct()
+
+  // the start: 2K of the chains, power, 2K of the box and its heat, as far as they act, which drive
+  // the chains from the start to each node
+
+  std::vector<Collocation::Scalar> at_nodes;
+  std::vector<bool> held;    ///< chains that are constant during the start
+  std::vector<double> rates_of_unknowns() const;
+
+  /// From the quantities of both parts.
+  double of_chain(int chain, const double (&parts)[2]) const;
+  double twice_of(int chain) const { return of_chain(chain, temperature.twice); }
+  ChainTarget target_of(int chain, double steps_ahead, double h) const;
+  double strongest_friction() const;
+  void note_setting();
+  void refuse_bodies() const;
+  void tell_freedoms();
+  Friction friction_of(int ibody) const;
+  void note_friction();
+  void share_friction();
+  void begin_passes(double h);
+  void add(int ibody, const double *velocity, const double *omega_body,
+           const Integrator::Pending &pending);
+  void find_friction(const Integrator &integrator);
+  void advance(int chain, double twice_kinetic, double h, int values);
+  void end_passes(double h);
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif

@@ -1,0 +1,268 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_temperature.h"
+
+#include "gear_quat_known_styles.h"
+#include "gear_quat_ranks.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "modify.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+// a kinetic energy smaller than this part of the subtracted energy is due to rounding
+
+static constexpr double ROUNDING_OF_ENERGY = 1.0e-13;
+
+// exact sums represent terms up to 2^20 units, also of a fast common motion
+
+static constexpr double LARGE_MOMENTA = 1024.0;    // 2^10
+
+/* ---------------------------------------------------------------------- */
+
+Temperature::Temperature(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
+                         const ThermostatWords &words, const PressureWords &pressure) :
+    Pointers(lmp),
+    subtracted(words.subtracted), fix(fix), bodies(bodies),
+    start(words.damp > 0.0 ? words.start : pressure.temperature),
+    stop(words.damp > 0.0 ? words.stop : pressure.temperature), of_bodies(start == 0.0),
+    insertions(words.may_wait), of_pressure(pressure.any())
+{
+}
+
+void Temperature::begin_run(bool anew, const Line &made)
+{
+  if (anew && start == 0.0) find_start();
+  if (update->nsteps > 0 || made.kt == 0.0)
+    aim(update->ntimestep);
+  else
+    line = made;
+  count();
+  sum_present();
+}
+
+/// The temperature of the bodies when the box starts to move.
+void Temperature::find_start()
+{
+  double here[2] = {0.0, 0.0};
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const RigidBody &rigid = bodies.rigid_of(ibody);
+    const BodyState &s = bodies.state_of(ibody);
+    here[0] += 2.0 * translational_energy(rigid, s.velocity) +
+        2.0 * rotational_energy(rigid, s.omega_body);
+    here[1] += rigid.freedoms(domain->dimension);
+  }
+  const auto all = over_ranks(MPI_SUM, here, world);
+  if (!(all[0] > 0.0))
+    error->all(FLERR,
+               "Fix gear/quat: the mass of the box needs a temperature, and the bodies have "
+               "none; give them velocities first, or add keyword ptemp");
+  start = stop = all[0] / all[1] * force->mvv2e / force->boltz;
+}
+
+void Temperature::aim(bigint step)
+{
+  const double per_degree = force->boltz / force->mvv2e;
+  const bigint steps = update->endstep - update->beginstep;
+  line = {per_degree * start, 0.0};
+  if (steps <= 0) return;
+  line.kt_step = per_degree * (stop - start) / steps;
+  line.kt += line.kt_step * (step - update->beginstep);
+}
+
+ChainTarget Temperature::target(double of_freedoms, double period, double steps_ahead,
+                                double h) const
+{
+  return {line.kt + line.kt_step * steps_ahead, h == 0.0 ? 0.0 : line.kt_step / h, of_freedoms,
+          period};
+}
+
+/* ----------------------------------------------------------------------
+   degrees of freedom, and the common motion
+------------------------------------------------------------------------- */
+
+bool Temperature::has(int ibody, Part part, int component) const
+{
+  const Mask off = bodies.body_at(ibody).off;
+  if (part == TRANSLATION) return component < domain->dimension && !(off & force_off(component));
+  return domain->dimension == 2 ? !(off & torque_off(2)) : (off & NO_TORQUE) != NO_TORQUE;
+}
+
+std::string Temperature::find_outside() const
+{
+  bigint here = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here += bodies.body_at(ibody).natoms;
+  const bigint others = atom->natoms - over_ranks(MPI_SUM, here, world);
+  if (others > 0) return fmt::format("{} atoms are in no body of this fix", others);
+  if (const Fix *other = fix_with_forces(lmp, fix)) return name_of(other) + " may exert forces";
+  for (const auto *other : modify->get_fix_list())
+    if (!insertions && known(Fact::EXCHANGE, other)) return name_of(other) + " may insert atoms";
+  if (known_pair(Fact::BACKGROUND, lmp->force))
+    return std::string("pair style ") + lmp->force->pair_style + " exerts forces from outside";
+  return "";
+}
+
+void Temperature::count()
+{
+  const int d = domain->dimension;
+  double heaviest = 0.0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    heaviest = std::max(heaviest, bodies.rigid_of(ibody).mass);
+  heaviest = over_ranks(MPI_MAX, heaviest, world);
+  const double unit = ExactSum::scale_of(heaviest * std::max((bigint) 1, bodies.number()));
+
+  ExactSum masses[3];
+  double here[4] = {};    // directions of translation, and of rotation
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const RigidBody &rigid = bodies.rigid_of(ibody);
+    if (has(ibody, ROTATION)) here[3] += rigid.freedoms(d) - d;
+    for (int k = 0; k < 3; ++k) {
+      if (!has(ibody, TRANSLATION, k)) continue;
+      masses[k].add(rigid.mass, unit);
+      ++here[k];
+    }
+  }
+  sum_over_ranks(masses, world);
+  const auto all = over_ranks(MPI_SUM, here, world);
+
+  stated = subtracted >= 0;
+  outside = find_outside();
+  of_total = 0;
+  for (int k = 0; k < 3; ++k) {
+    mass[k] = masses[k].value(unit);
+    count_of[k] = all[k];
+    constant[k] = count_of[k] > 0.0 &&
+        (stated ? subtracted >= d
+                : domain->periodicity[k] && outside.empty() &&
+                 count_of[k] == (double) bodies.number());
+    of_total += constant[k];
+  }
+  if (stated) of_total = subtracted;
+  freedoms[TRANSLATION] = all[0] + all[1] + all[2] - of_total;
+  freedoms[ROTATION] = all[3];
+  changes = bodies.changes();
+  natoms = atom->natoms;
+}
+
+bool Temperature::is_counted() const
+{
+  return changes == bodies.changes() && natoms == atom->natoms;
+}
+
+/* ----------------------------------------------------------------------
+   sums over bodies
+------------------------------------------------------------------------- */
+
+/// The same in all steps with one target.
+double Temperature::unit_of_energies() const
+{
+  return ExactSum::scale_of(std::max(1.0, freedoms[TRANSLATION] + freedoms[ROTATION]) * line.kt);
+}
+
+void Temperature::begin()
+{
+  energies = unit_of_energies();
+  momenta = LARGE_MOMENTA *
+      ExactSum::scale_of(std::sqrt(line.kt * std::max({mass[0], mass[1], mass[2]})));
+  for (auto &sum : sums) sum = ExactSum();
+}
+
+void Temperature::add(int ibody, const double *velocity, const double *omega_body)
+{
+  const RigidBody &rigid = bodies.rigid_of(ibody);
+  double along[3] = {velocity[0], velocity[1], velocity[2]};
+  const bool masked = bodies.body_at(ibody).off != 0;
+  for (int k = 0; masked && k < 3; ++k)
+    if (!has(ibody, TRANSLATION, k)) along[k] = 0.0;
+  sums[TRANSLATION].add(2.0 * translational_energy(rigid, along), energies);
+  if (!masked || has(ibody, ROTATION))
+    sums[ROTATION].add(2.0 * rotational_energy(rigid, omega_body), energies);
+  for (int k = 0; of_pressure && k < Upper::SIZE; ++k)
+    sums[TENSOR + k].add(rigid.mass * velocity[Upper::ROW[k]] * velocity[Upper::COLUMN[k]],
+                         energies);
+  for (int k = 0; k < 3; ++k)
+    if (constant[k]) sums[MOMENTUM + k].add(rigid.mass * along[k], momenta);
+}
+
+void Temperature::sum()
+{
+  sum_over_ranks(sums, world);
+  double of_common = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const double momentum = sums[MOMENTUM + k].value(momenta);
+    common[k] = constant[k] ? momentum / mass[k] : 0.0;
+    of_common += momentum * common[k];
+  }
+  for (const Part part : {TRANSLATION, ROTATION}) twice[part] = sums[part].value(energies);
+  twice[TRANSLATION] -= of_common;
+  if (twice[TRANSLATION] < ROUNDING_OF_ENERGY * of_common) twice[TRANSLATION] = 0.0;
+  for (int k = 0; k < Upper::SIZE; ++k) {
+    const int a = Upper::ROW[k], b = Upper::COLUMN[k];
+    tensor[k] = sums[TENSOR + k].value(energies) - mass[a] * common[a] * common[b];
+  }
+  begin();
+}
+
+void Temperature::sum_present()
+{
+  begin();
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const BodyState &s = bodies.state_of(ibody);
+    add(ibody, s.velocity, s.omega_body);
+  }
+  sum();
+}
+
+/* ----------------------------------------------------------------------
+   messages and restart
+------------------------------------------------------------------------- */
+
+double Temperature::common_energy() const
+{
+  double sum = 0.0;
+  for (int k = 0; k < 3; ++k) sum += mass[k] * common[k] * common[k];
+  return 0.5 * sum / line.kt;
+}
+
+std::string Temperature::description() const
+{
+  if (!has_translation()) return "";
+  if (stated) return fmt::format(", without {} by fix_modify extra/dof,", of_total);
+  if (!outside.empty()) return ", with those of the total momentum because " + outside + ",";
+  std::vector<std::string> along;
+  for (int k = 0; k < 3; ++k)
+    if (constant[k]) along.emplace_back(1, "xyz"[k]);
+  if (along.empty()) return ", with those of the total momentum,";
+  const bool all = (int) along.size() == domain->dimension;
+  return ", without those of the total momentum" +
+      (all ? std::string() : " along " + utils::join_words(along, " and ")) + ",";
+}
+
+void Temperature::tell_once(std::string &last, const std::string &message) const
+{
+  if (message != last && comm->me == 0)
+    utils::logmesg(lmp, "Fix gear/quat {}: {}\n", fix->id, message);
+  last = message;
+}
+
+void Temperature::fields(Fields &v)
+{
+  double found = start;
+  v(found);
+  if (v.reads() && of_bodies) start = stop = found;
+}

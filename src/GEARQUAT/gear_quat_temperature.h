@@ -1,0 +1,125 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+/* The temperature of all bodies: its target, their degrees of freedom, and their kinetic energies as
+   exact sums over all ranks, so that a run does not depend on the distribution of bodies.
+
+   As in LAMMPS' thermostats, the target of a step changes linearly with the number of the step from
+   the beginning to the end of the run.
+
+   A component of a momentum that is turned off by keywords force and torque has no temperature.
+   Neither has the total momentum P in a direction in which it is constant.  By a rule, this is so if
+   the box is periodic along it, all atoms are in bodies of this fix, keyword force holds none of
+   them, and no other fix or pair style exerts forces from outside.  Friction then acts on momenta
+   relative to the common motion V = P/M, and n bodies have n - 1 degrees of freedom of translation in
+   this direction:
+
+     p' = F - xi (p - m V),   2 K = sum p^2/m - P^2/M                                       (T5)
+
+   so that a common motion is conserved and affects nothing else.  In all other directions friction
+   acts on whole momenta, including P.  fix_modify extra/dof replaces the rule.  V belongs to every
+   sum, because a deviation from it would grow. */
+
+#ifndef LMP_GEAR_QUAT_TEMPERATURE_H
+#define LMP_GEAR_QUAT_TEMPERATURE_H
+
+#include "gear_quat_arguments.h"
+#include "gear_quat_bodies.h"
+#include "gear_quat_cell.h"
+#include "gear_quat_chain.h"
+#include "gear_quat_exact_sum.h"
+#include "gear_quat_fields.h"
+#include "pointers.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+class Fix;
+}    // namespace LAMMPS_NS
+
+namespace LAMMPS_NS::GearQuat {
+
+class Temperature : protected Pointers {
+ public:
+  enum Part { TRANSLATION, ROTATION };
+  static constexpr Mask NO_TORQUE = torque_off(0) | torque_off(1) | torque_off(2);
+  struct Line {    ///< kT of a step, and its change with every step
+    double kt = 0.0, kt_step = 0.0;
+    template <class V> void fields(V &v) { v(kt, kt_step); }
+  };
+
+  int subtracted;             ///< fix_modify extra/dof; negative: the rule decides
+  Line line;                  ///< the target of the present step
+  double freedoms[2] = {};    ///< of both parts
+  double twice[2] = {};       ///< twice the kinetic energies, without P^2/M
+  Upper tensor;               ///< sum m v_a v_b, without M V_a V_b; with a pressure only
+  double common[3] = {};      ///< V of the last sum, 0 where P is not constant
+
+  /// Without keyword temp, it is the temperature for the mass of a box.
+  Temperature(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, const ThermostatWords &words,
+              const PressureWords &pressure);
+
+  /// Counts and sums.  made: the target of the last step; a run without steps keeps it.  anew: there
+  /// are no histories.  Collective.
+  void begin_run(bool anew, const Line &made);
+  /// The target of that step becomes the present one.
+  void aim(bigint step);
+  /// For a chain, a number of steps of h ahead.
+  ChainTarget target(double of_freedoms, double period, double steps_ahead, double h) const;
+
+  /// Counts the degrees of freedom.  Collective.
+  void count();
+  /// False if atoms or bodies have come or gone since count().
+  bool is_counted() const;
+  /// True if that momentum has a temperature, apart from the total momentum.  In two dimensions
+  /// bodies turn only about z.
+  bool has(int ibody, Part part, int component = 0) const;
+
+  // sums over bodies: begin(), add() for owned bodies, and the collective sum()
+
+  void begin();
+  double unit_of_energies() const;
+  void add(int ibody, const double *velocity, const double *omega_body);
+  void sum();
+  /// Of the present states.  Collective.
+  void sum_present();
+
+  // after count()
+
+  bool has_translation() const { return count_of[0] + count_of[1] + count_of[2] > 0.0; }
+  /// Kinetic energy of the common motion, in kT.
+  double common_energy() const;
+  /// For messages: whether the total momentum counts, and why; empty if it has no directions.
+  std::string description() const;
+  /// Rank 0 prints the message if it differs from the last one.
+  void tell_once(std::string &last, const std::string &message) const;
+
+  void fields(Fields &v);
+
+ private:
+  const Fix *fix;
+  const Bodies &bodies;
+  double start, stop;       ///< the target of a run
+  const bool of_bodies;     ///< no keyword states a temperature
+  const bool insertions;    ///< what other fixes insert are bodies of this fix
+  const bool of_pressure;
+
+  bool constant[3] = {}, stated = false;
+  std::string outside;    ///< what exerts forces from outside, empty for nothing
+  int of_total = 0;       ///< degrees of freedom of P that do not count
+  double count_of[3] = {}, mass[3] = {};
+  int changes = 0;      ///< Bodies::changes() in count()
+  bigint natoms = 0;    ///< all atoms then: others decide whether momentum counts
+  double energies = 1.0, momenta = 1.0;    ///< units of the sums
+  enum { TENSOR = 2, MOMENTUM = TENSOR + Upper::SIZE, SUMS = MOMENTUM + 3 };
+  ExactSum sums[SUMS];    ///< twice the kinetic energies, the tensor, and P
+
+  std::string find_outside() const;
+  void find_start();
+};
+
+}    // namespace LAMMPS_NS::GearQuat
+
+#endif
