@@ -211,7 +211,7 @@ void FixGearQuat::setup(int vflag)
   const bool first = !step.had_run();
   step.readers = readers_at_end(lmp, this);
   ownership.spread_states();
-  if (first) other_fixes.check_gravity();
+  if (first) other_fixes.warn_of_gravity();
   step.gather(atom->f, atom->torque);
   driven_box.follow();
   step.begin_run();

@@ -157,7 +157,7 @@ Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extend
   certain = 0.25 * (double) IMGMASK / steepest;
   find_sizes();
   find_extremes();
-  report_faults();
+  refuse_faults();
   find_moments();
   const std::vector<Momenta> momenta = find_momenta();
   for (int part = 0; part < parts.number(); ++part) {
@@ -168,8 +168,8 @@ Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extend
   orient_axes();
   if (former) keep_axes();
   for (int part = 0; part < parts.number(); ++part) find_rotation(part, momenta[part]);
-  report_faults();
-  report_missing();
+  refuse_faults();
+  refuse_missing();
 }
 
 void Assembly::find_sizes()
@@ -505,14 +505,14 @@ void Assembly::check_moments(const Made &one)
     faulty[UNBALANCED] = one.body.id;
 }
 
-void Assembly::report_faults()
+void Assembly::refuse_faults()
 {
   const auto any = over_ranks(MPI_MAX, faulty, world);
   for (int fault = 0; fault < FAULTS; ++fault)
     if (any[fault] > 0) error->all(FLERR, FAULT_TEXTS[fault], any[fault]);
 }
 
-void Assembly::report_missing() const
+void Assembly::refuse_missing() const
 {
   if (over_ranks(MPI_SUM, (int) found.size(), world) == (int) given.size()) return;
   for (const auto &stated : given) {

@@ -175,8 +175,8 @@ class Assembly : protected Pointers {
   void find_rotation(int part, const Momenta &momenta);
   void check_place(int part, const Momenta &momenta);
   void check_moments(const Made &one);
-  void report_faults();
-  void report_missing() const;
+  void refuse_faults();
+  void refuse_missing() const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -23,13 +23,13 @@ std::string GearQuat::words_of(const Rate &rate)
                      rate.radians, rate.limit, rate.remedy);
 }
 
-void Blowup::check_loads(double h, double **f) const
+void Blowup::watch_loads(double h, double **f) const
 {
   for (const auto *list : {&bodies.points, &bodies.tops, &bodies.fresh})
-    for (const int ibody : *list) check_load(ibody, h, f);
+    for (const int ibody : *list) watch_load(ibody, h, f);
 }
 
-void Blowup::check_load(int ibody, double h, double **f) const
+void Blowup::watch_load(int ibody, double h, double **f) const
 {
   const BodyState after =
       kicked(bodies.rigid_of(ibody), bodies.state_of(ibody), bodies.load_of(ibody), h);

@@ -34,9 +34,9 @@ class Blowup : protected Pointers {
 
   /// Ends the run if the present loads would make an owned body unstable within a step h.  Atoms
   /// are at the positions of the loads; f: forces on them.
-  void check_loads(double h, double **f) const;
+  void watch_loads(double h, double **f) const;
   /// Ends the run if the present load would make this body unstable within a step h.
-  void check_load(int ibody, double h, double **f) const;
+  void watch_load(int ibody, double h, double **f) const;
   /// Ends the run on all ranks, called by the rank that owns the body (for a large one, by all of
   /// them together).  The message gives step, time, body, its motion and load, its atom with the
   /// largest force, and one remedy.  s: the resulting state, beyond the limits.

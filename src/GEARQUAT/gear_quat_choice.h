@@ -84,13 +84,9 @@ class MotionSums {
   /// Radians in a step; infinite if unknown, 0 without motion.
   double fast_edge(double h) const
   {
-    if (knows_derivatives(h)) return std::fabs(h) * std::pow(sums[0] / sums[1], 0.25);
-    return MOST_BY_MEAN * mean_edge(h);
-  }
-  /// The root mean square frequency of rotations, in radians per step, by loads.
-  double mean_edge(double h) const
-  {
-    if (sums[3] > 0.0) return std::fabs(h) * std::sqrt(sums[2] / sums[3]);
+    const double size = std::fabs(h);
+    if (knows_derivatives(h)) return size * std::pow(sums[0] / sums[1], 0.25);
+    if (sums[3] > 0.0) return EDGE_BY_MEAN * size * std::sqrt(sums[2] / sums[3]);
     return sums[2] > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
   }
   /// True if the fast edge is from derivatives.
@@ -99,10 +95,10 @@ class MotionSums {
     return sums[1] > 0.0 && h * h * sums[1] > LEAST_CHANGE * LEAST_CHANGE * sums[4];
   }
 
-  // The fast edge by the root mean square frequency: 1.75 in SPC/E at 300 K, 4 and more in fluids
-  // whose bodies collide rarely.  A value that is too large costs only accuracy, which a start without
-  // derivatives does not have; one that is too small causes no false warning.
-  static constexpr double LEAST_BY_MEAN = 1.75, MOST_BY_MEAN = 3.0;
+  // by the root mean square frequency: 1.75 times that in SPC/E at 300 K, 4 times and more in fluids
+  // whose bodies collide rarely; an edge that is too large costs only accuracy, which a start without
+  // derivatives does not have, and the least part causes no false warning
+  static constexpr double EDGE_BY_MEAN = 3.0, LEAST_PART = 1.75 / EDGE_BY_MEAN;
 
  private:
   /// Changes of velocities in a step, relative to the velocities, that are not larger than this are
@@ -147,18 +143,9 @@ struct ChoiceOfValues {
     choice.reason = Reason::NOISE;
     if (noise == Noise::RANDOM && !scheme.first()) {
       choice.scheme.rows = VERLET;
-      return choice;
-    }
-    // the best first, the most permissive last
-    const int most = scheme.first() ? 6 : 8, fewest = scheme.first() ? FIRST_FEWEST : SECOND_FEWEST;
-    for (const bool tuned : {true, false}) {
-      if (tuned ? !scheme.tuned : scheme.tuned && !may_be_gear) continue;
-      choice.scheme.tuned = tuned;
-      for (int n = tuned ? 9 : most; n >= fewest; --n) {
-        if (tuned && (n == 8 || n == 6)) continue;    // odd numbers, and four, have tuned sets
-        choice.scheme.rows = n;
-        if (suits_noise(choice.scheme, noise)) return choice;
-      }
+    } else {
+      choice.scheme.tuned = scheme.tuned && !may_be_gear;
+      choice.scheme.rows = scheme.first() ? FIRST_FEWEST : SECOND_FEWEST;
     }
     return choice;
   }

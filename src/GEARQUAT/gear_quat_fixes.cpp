@@ -142,7 +142,7 @@ tagint GearQuat::shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix 
 }
 
 /// The rigid fixes require keyword disable, and apply gravity to bodies themselves.
-void OtherFixes::check_gravity()
+void OtherFixes::warn_of_gravity()
 {
   if (!utils::strmatch(update->integrate_style, "^verlet")) return;
   const size_t n = 3 * (size_t) atom->nlocal;
@@ -248,7 +248,7 @@ bool OtherFixes::gather_impulses()
    changes that bodies do not follow
 ------------------------------------------------------------------------- */
 
-void OtherFixes::check_velocities(bool all)
+void OtherFixes::watch_velocities(bool all)
 {
   if (++sample >= sites.number()) sample = 0;
   const Site *const first = sites.begin() + (all ? 0 : sample);
@@ -261,7 +261,7 @@ void OtherFixes::check_velocities(bool all)
   }
 }
 
-void OtherFixes::check_places()
+void OtherFixes::watch_places()
 {
   if (!watched.empty()) {
     for (const Site &site : sites)

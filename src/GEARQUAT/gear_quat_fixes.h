@@ -8,7 +8,7 @@
    or the run does not begin.  Effects of styles that no table lists are detected by samples.
 
    The fix calls init() before every run; take_velocities() before a step, with the velocities left
-   by the previous step; check_places() after the forces, with the predicted positions. */
+   by the previous step; watch_places() after the forces, with the predicted positions. */
 
 #ifndef LMP_GEAR_QUAT_FIXES_H
 #define LMP_GEAR_QUAT_FIXES_H
@@ -56,7 +56,7 @@ class OtherFixes : protected Pointers {
 
   /// Rank 0 warns of fix gravity if it does not act on bodies, or acts with masses that differ from
   /// the masses of the bodies.  In setup(), before loads are gathered.  Collective.
-  void check_gravity();
+  void warn_of_gravity();
 
   /// Returns bodies on this rank whose velocities other fixes have changed at the end of that step;
   /// their states have the new velocities, on all ranks.  A change that is not a rigid motion ends
@@ -67,9 +67,9 @@ class OtherFixes : protected Pointers {
   // known to move atoms.
 
   /// Before a step.  all: tests the positions and velocities of all sites.
-  void check_velocities(bool all);
+  void watch_velocities(bool all);
   /// The forces have been evaluated.
-  void check_places();
+  void watch_places();
 
  private:
   const Fix *fix;

@@ -14,12 +14,8 @@
 
 #include "gear_quat_startup.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <string>
-#include <vector>
 
 namespace LAMMPS_NS::GearQuat {
 

@@ -132,10 +132,10 @@ void Step::begin_run()
   const double h = length();
   bath.begin_run(!started, tolerance ? std::min(h, bath.longest_step()) : h);
   if (tolerance) tolerance->announce_output();
-  if (update->nsteps > 0) look_at_rates(edge_by_loads(MotionSums::MOST_BY_MEAN));
+  if (update->nsteps > 0) note_rates(edge_by_loads());
   if (update->nsteps > 0 && !started) {    // before anything has changed
     find_limits(h);
-    examine_all(atom->f);
+    watch_all(atom->f);
   }
   phase = Phase::SET_UP;
 }
@@ -146,7 +146,7 @@ void Step::end_run()
 {
   constexpr int SHORT = 100;
   if (started && update->nsteps >= SHORT) {
-    look_at_rates(edge_by_loads(MotionSums::LEAST_BY_MEAN));
+    note_rates(MotionSums::LEAST_PART * edge_by_loads());
     warn_of_rates();
   }
   if (phase == Phase::ENDED) phase = Phase::BETWEEN;
@@ -191,7 +191,7 @@ void Step::start(double **f, double **torque)
   for (Step *one : fleet.members) {
     one->phase = Phase::READY;
     const bool needs = one->tolerance ? !one->started : one->has_to_start(f);
-    if (needs) one->check_loads(f);
+    if (needs) one->watch_loads(f);
     if (one->bootstraps()) {
       full.push_back(one);
       needed.push_back(needs);
@@ -199,7 +199,6 @@ void Step::start(double **f, double **torque)
       one->bath.box.refer_to_box(one->length());
       one->seed_local(one->tolerance ? 3 : 2);
       one->note_start();
-      if (one->tolerance) one->tolerance->warn_of_rounding();
     }
   }
   start_together(full, needed);
@@ -341,10 +340,10 @@ void Step::seed_local(int terms)
 void Step::note_start()
 {
   started = true;
-  look_at_rates(edge_of_start);
+  note_rates(edge_of_start);
   warn_of_rates();
   // an estimate for a blow-up
-  if (edge_of_start == 0.0) look_at_rates(edge_by_loads(MotionSums::MOST_BY_MEAN));
+  if (edge_of_start == 0.0) note_rates(edge_by_loads());
   if (tolerance) make_integrator();
 }
 
@@ -481,19 +480,12 @@ MotionSums Step::sums_by_loads() const
   return here;
 }
 
-/// Sums over all ranks.
-MotionSums Step::sums_of(const MotionSums &here) const
+/// Input to the choice.  here: of the bodies that this rank owns.  Collective.
+ChoiceOfValues Step::scene_of(const MotionSums &here) const
 {
   MotionSums all = here;
   const auto sums = over_ranks(MPI_SUM, all.sums, world);
   std::copy(sums.begin(), sums.end(), all.sums);
-  return all;
-}
-
-/// Input to the choice.  here: of the bodies that this rank owns.  Collective.
-ChoiceOfValues Step::scene_of(const MotionSums &here) const
-{
-  const MotionSums all = sums_of(here);
   ChoiceOfValues scene;
   scene.edge = bodies.number() > 0 ? all.fast_edge(length()) : HUGE_VAL;
   scene.exact = all.knows_derivatives(length());
@@ -546,7 +538,7 @@ void Step::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice
 
 /// The table for the present step.  edge: radians of vibrations in a step.  The bath is first,
 /// because it also accelerates bodies.  Collective.
-void Step::look_at_rates(double edge)
+void Step::note_rates(double edge)
 {
   if (tolerance) return;
   std::vector<Rate> &table = blowup.rates;
@@ -573,13 +565,12 @@ void Step::look_at_rates(double edge)
 
 /// Radians of vibrations in a step by the present loads, of many bodies; 0 if they do not show
 /// them.  Collective.
-double Step::edge_by_loads(double by_mean) const
+double Step::edge_by_loads() const
 {
   constexpr bigint MANY = 10;
-  const MotionSums all = sums_of(sums_by_loads());
-  const double edge = by_mean * all.mean_edge(length());
-  const bool noise = noise_of_forces(lmp, ownership).noise != Noise::NONE;
-  return bodies.number() >= MANY && std::isfinite(edge) && !noise ? edge : 0.0;
+  const ChoiceOfValues scene = scene_of(sums_by_loads());
+  const bool known = std::isfinite(scene.edge) && scene.noise == Noise::NONE;
+  return known && bodies.number() >= MANY ? scene.edge : 0.0;
 }
 
 /// Rank 0 warns once of the first rate that is too large; others may have the same cause.
@@ -618,7 +609,7 @@ const char *Step::another_scheme_suits()
 void Step::begin(int vflag, double **f)
 {
   vflag_of_step = vflag;
-  others.check_velocities(phase == Phase::BETWEEN);    // in a run with `pre no` of all sites
+  others.watch_velocities(phase == Phase::BETWEEN);    // in a run with `pre no` of all sites
   if (tolerance) tolerance->begin_step();
   if (tolerance) bath.keep();
   predict(f);
@@ -628,7 +619,7 @@ void Step::begin(int vflag, double **f)
 
 void Step::end(double **f, double **torque)
 {
-  others.check_places();
+  others.watch_places();
   phase = Phase::ENDED;
   for (;;) {
     gather(f, torque);
@@ -759,7 +750,7 @@ template <bool MASKED, bool POINT, bool CHANGING> void Step::correct_body(int ib
   else
     integrator->body_state(rigid, rows, state, bodies.change_frame(ibody));
   if (MASKED) last.work = work_between(bodies.load_of(ibody), before, state);
-  if (!CHANGING) examine(ibody, f);
+  if (!CHANGING) watch(ibody, f);
 }
 
 /// Restores the histories to the beginning of the step, for another try.
@@ -779,11 +770,11 @@ void Step::shorten()
 void Step::accept(double **f)
 {
   const double h = integrator->step();
-  if (tolerance || bath.acts()) examine_all(f);    // otherwise correct_body() has done this
+  if (tolerance || bath.acts()) watch_all(f);    // otherwise correct_body() has done this
   bath.note_step(h);
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
-    blowup.check_load(ibody, h, f);
+    blowup.watch_load(ibody, h, f);
     seed(ibody, known);
   }
   if (!bodies.fresh.empty()) bodies.take_in_fresh();
@@ -791,10 +782,10 @@ void Step::accept(double **f)
 }
 
 /// Ends the run if the present loads would make a body unstable in the next step.
-void Step::check_loads(double **f)
+void Step::watch_loads(double **f)
 {
   find_limits(length());
-  blowup.check_loads(length(), f);
+  blowup.watch_loads(length(), f);
 }
 
 /// A shrink-wrapped box sets no limits.
@@ -813,16 +804,16 @@ void Step::find_limits(double h)
 }
 
 /// Tests a corrected state.
-inline void Step::examine(int ibody, double **f)
+inline void Step::watch(int ibody, double **f)
 {
   const BodyState &state = bodies.state_of(ibody);
   if (!blowup.limits.keep(state)) blowup.stop(ibody, state, integrator->step(), f);
 }
 
-void Step::examine_all(double **f)
+void Step::watch_all(double **f)
 {
   for (const auto *list : {&bodies.points, &bodies.tops})
-    for (const int ibody : *list) examine(ibody, f);
+    for (const int ibody : *list) watch(ibody, f);
 }
 
 bool Step::has_readers() const

@@ -213,7 +213,6 @@ class Step : protected Pointers {
   double edge_rate = 0.0;          ///< fast edge divided by the step, if the number was chosen
   double edge_of_start = 0.0;      ///< radians of vibrations in a step, if the start has found them
   std::set<std::string> warned;    ///< of these rates
-  MotionSums sums_of(const MotionSums &here) const;
   ChoiceOfValues scene_of(const MotionSums &here) const;
   MotionSums sums_by_loads() const;
   Scheme choose_scheme(const MotionSums &here);
@@ -222,8 +221,8 @@ class Step : protected Pointers {
     return scene_of(here).choose(args.scheme).scheme;
   }
   void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
-  void look_at_rates(double edge);
-  double edge_by_loads(double by_mean) const;
+  void note_rates(double edge);
+  double edge_by_loads() const;
   void warn_of_rates();
   const char *another_scheme_suits();
 
@@ -236,9 +235,9 @@ class Step : protected Pointers {
   template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int ibody, double **f);
   void shorten();
   void accept(double **f);
-  void examine(int ibody, double **f);
-  void examine_all(double **f);
-  void check_loads(double **f);
+  void watch(int ibody, double **f);
+  void watch_all(double **f);
+  void watch_loads(double **f);
   void find_limits(double h);
 
   // the length of the step

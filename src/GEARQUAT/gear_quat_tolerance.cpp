@@ -132,23 +132,6 @@ void Tolerance::begin(double permitted, const Fix *first)
   tell_of_first_step(given);
 }
 
-/// Rank 0 warns if no step is short enough for eps.  Collective.
-void Tolerance::warn_of_rounding() const
-{
-  const Integrator integrator = this->integrator();
-  double largest = 0.0;
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    largest = std::max(largest, control.error(rounding(integrator, ibody, bodies.load_of(ibody))));
-  largest = over_ranks(MPI_MAX, largest, world);
-  if (control.eps >= largest || comm->me != 0) return;
-  error->warning(
-      FLERR,
-      "Fix gear/quat tolerance: eps is {:.2g} {} units, and rounding of the motion causes "
-      "errors of {:.2g}, which shorter steps do not reduce; use an eps of {:.2g} or more",
-      shown(control.eps), control.energy ? "energy" : "distance", shown(largest),
-      rounded_up(shown(largest)));
-}
-
 /// The first step of histories with the present loads alone.  Forces are assumed to change by their
 /// own magnitude while a body moves by its size, at its speed or by its acceleration from rest.
 double Tolerance::first_step() const
@@ -292,14 +275,6 @@ void Tolerance::begin_run()
                      why);
     told = why;
   }
-  const double fastest = over_ranks(MPI_MAX, largest_speed(), world);
-  const double farthest = farthest_step(fastest);
-  const bool moves_limit = fastest > 0.0 && farthest >= control.shortest;
-  if (moves_limit && control.longest > farthest && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat tolerance: dtmax {:.3g} is longer than the {:.3g} in which the "
-                   "fastest site moves by {:.3g}; steps are not longer than that",
-                   control.longest, farthest, limit_of_motion());
 }
 
 Correction Tolerance::correct(const Integrator &integrator, int ibody, const Load &load)

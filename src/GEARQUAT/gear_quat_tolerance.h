@@ -6,7 +6,7 @@
 /* Keyword tolerance inside LAMMPS: the largest errors of all bodies on all ranks, the control
    law of gear_quat_remembered_loads.h, and the outputs that depend on times.
 
-   When histories start: begin() and warn_of_rounding().
+   When histories start: begin().
    In every step: begin_step(); prepare() before the prediction; correct() for every body, or
    note_prediction() and note_correction() around the correction by a bath; and accepts().  If a
    step is rejected, the caller restores the histories, calls shorten_loads() and shorten_step(), and
@@ -107,8 +107,6 @@ class Tolerance : protected Pointers {
   /// allowed, `permitted`, and the step whose error would be the tolerance.  first: the first fix
   /// gear/quat, which starts the histories of all before it begins the step.  Collective.
   void begin(double permitted, const Fix *first);
-  /// For new histories: rank 0 warns if no step is short enough for eps.  Collective.
-  void warn_of_rounding() const;
 
   /// Begins a step, with the histories of the last step.  After a run with `pre no` the length of
   /// the histories is restored; ends the run if other atoms have moved already.  Collective.

@@ -174,16 +174,6 @@ def test_a_stated_number_is_warned_of(lmp_tree, data):
     assert "9 values cannot follow them" in run(lmp_tree, data, "values 9", after=after, dt=SHORT).words
 
 
-def test_the_friction_of_a_thermostat(lmp_tree, data):
-    def with_target(target, damp):
-        deck = water(data, f"gear/quat molecule temp {target} {target} {damp}", dt=LONG, steps=4)
-        return chosen(lmp_tree.succeed(deck.replace("fix_modify move energy yes", "")))
-
-    assert with_target(300, 200)[0][0] == 5
-    ((n, _, why),) = with_target(5, 20)
-    assert n != 5 and "friction" in why
-
-
 def test_a_gas_that_cools_collides_with_nothing(lmp_tree):
     """Its friction is strong at first; without forces there is nothing to warn of."""
     hot = "velocity all create 34 991\nthermo_style custom step temp"

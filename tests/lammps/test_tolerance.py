@@ -182,19 +182,6 @@ def test_two_controls_are_refused(lmp_tree):
         lmp_tree.refuse(two_molecules("molecule tolerance 1e-8", before), message)
 
 
-@pytest.mark.parametrize("measure", ["length", "energy"])
-def test_a_tolerance_below_rounding_is_warned_of(lmp_tree, measure):
-    """With the smallest eps of the message there is no warning."""
-
-    def told(eps):
-        result = lmp_tree.succeed(two_molecules(f"molecule tolerance {eps} {measure}"))
-        return re.findall(r"rounding of the motion causes errors of (\S+), .*use an eps of (\S+) or more", result.words)
-
-    ((rounding, advised),) = told("1e-22")
-    assert 1e-18 < float(rounding) < 1e-14 and float(rounding) <= float(advised) <= 1.1 * float(rounding)
-    assert told(advised) == [] and len(told(0.9 * float(rounding))) == 1
-
-
 @pytest.mark.parametrize("eps", ["1e-15 length", "1e-9 energy"])
 @pytest.mark.parametrize("distance", [0.02, 0.002])
 def test_a_near_singular_encounter_keeps_the_energy(lmp_tree, distance, eps):

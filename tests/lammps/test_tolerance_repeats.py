@@ -301,13 +301,6 @@ def test_a_tolerance_that_anything_meets(lmp_tree):
     assert run[NEXT].max() < 0.25 * 0.3 / 2.0 * 1.5  # a quarter of the skin at a speed of 2
 
 
-def test_a_longest_step_beyond_the_motion(lmp_tree):
-    result = lmp_tree.succeed(scene("1e-8", words="dtmax 10", until=1.0))
-    assert result.output.count("dtmax 10 is longer than the 0.0375") == 1
-    result = lmp_tree.succeed(scene("1e-8", words="dtmax 0.03", until=1.0))
-    assert "is longer than" not in result.output
-
-
 def test_a_shortest_step_is_not_made_again(lmp_tree):
     deck = scene("1e-10", words="dtmin 0.004").replace(LARGEST, f"{LARGEST} {HELD} {SMALLEST} {MEAN}")
     result = lmp_tree.succeed(deck)
