@@ -143,7 +143,6 @@ class Bodies {
   std::vector<int> ghost_tops;    ///< ghost bodies that rotate
 
   Body &change_body(int ibody) { return body[ibody]; }
-  Load &change_load(int ibody) { return load[ibody]; }
   /// Removes all bodies except owned bodies.
   void drop_copies() { resize(nmove = nown), large.clear(); }
   /// The index of another body, the last one: first owned bodies, then copies of large ones, then

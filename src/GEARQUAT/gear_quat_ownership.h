@@ -60,9 +60,7 @@ class Ownership : protected Pointers {
   int owned_by(int atom) const { return assigned[atom].owned; }
   /// The local index of the owner atom of an owned body.
   int owner_of(int ibody) const { return owner_atom[ibody]; }
-  /// The atom ID of the owner of an atom's body, 0 for none.
-  tagint owner_tag(int atom) const { return assigned[atom].owner; }
-  /// The same of all owned atoms.
+  /// The atom IDs of the owners of the bodies of all owned atoms, 0 for none.
   std::vector<tagint> owner_tags() const;
   /// The vector from the center of mass of the body to an atom, along the principal axes.
   const double *arm_of(int atom) const { return assigned[atom].arm; }
