@@ -4,7 +4,7 @@
 
 #include "gear_quat_extended.h"
 #include "gear_quat_forces.h"
-#include "gear_quat_template.h"
+#include "gear_quat_given_bodies.h"
 
 #include "comm.h"
 #include "error.h"

@@ -453,13 +453,23 @@ void FixGearQuat::set_arrays(int i)
 }
 
 /// Another fix has inserted a molecule of the template.
+/// Makes one body of the atoms that were just created on all ranks, from index `first` on; its ID is
+/// the smallest molecule ID of its atoms.
 void FixGearQuat::set_molecule(int first, tagint /*before*/, int which, double *center,
                                double *velocity, double *quat)
 {
   for (int i = first; i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit) ownership.note_outside_atom(-1);
-  const bool known = which >= 0 && which < (int) stated.size();
-  add_molecule(lmp, ownership, first, known ? &stated[which] : nullptr, {center, velocity, quat});
+  tagint smallest = MAXTAGINT;
+  for (int i = first; i < atom->nlocal; ++i) smallest = std::min(smallest, atom->molecule[i]);
+  const tagint molecule = over_ranks(MPI_MIN, smallest, world);
+
+  GivenBodies given;
+  if (which >= 0 && which < (int) stated.size() && stated[which].differs)
+    given[molecule] = given_at(stated[which], {center, velocity, quat});
+  std::vector<tagint> ids(atom->nlocal, 0);
+  std::fill(ids.begin() + first, ids.end(), molecule);
+  ownership.add(ids, given, true);
 }
 
 /* ----------------------------------------------------------------------

@@ -28,7 +28,7 @@ FixStyle(gear/quat,FixGearQuat);
 #include "gear_quat_outputs.h"
 #include "gear_quat_restart.h"
 #include "gear_quat_step.h"
-#include "gear_quat_template.h"
+#include "gear_quat_given_bodies.h"
 
 #include <cmath>
 #include <vector>

@@ -20,6 +20,15 @@
 
 namespace LAMMPS_NS::GearQuat {
 
+// in gear_quat_keyword_table.cpp
+
+/// All rows, in the order of the manual.
+const KeywordTable &keyword_table();
+/// All rules, in the order in which they are checked.
+const KeywordRules &keyword_rules();
+/// The keywords of constant pressure.
+const std::vector<std::string> &pressure_keywords();
+
 /// Values of keywords temp, tchain and thermostat.
 struct ThermostatWords {
   double start = 0.0, stop = 0.0, damp = 0.0;    ///< damp 0: none

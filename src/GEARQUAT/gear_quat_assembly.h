@@ -16,7 +16,7 @@
 
 #include "gear_quat_bodies.h"
 #include "gear_quat_exact_sum.h"
-#include "gear_quat_infile.h"
+#include "gear_quat_given_bodies.h"
 #include "gear_quat_ranks.h"
 #include "pointers.h"
 

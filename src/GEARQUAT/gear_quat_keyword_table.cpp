@@ -18,7 +18,7 @@ using K = Keyword;
 // clang-format off
 
 /// The reasons for the defaults are in doc/decisions.md.
-const std::vector<Keyword> &GearQuat::keyword_table()
+const KeywordTable &GearQuat::keyword_table()
 {
   static const std::vector<std::string> FLAGS = {"M", "xflag", "yflag", "zflag"};
   static const std::vector<std::string> TEMPERATURES = {"Tstart", "Tstop", "Tdamp"};
@@ -26,7 +26,7 @@ const std::vector<Keyword> &GearQuat::keyword_table()
   static const auto pressure = [](const char *name, void (*store)(A &, const V &), const char *meaning) {
     return K{name, PHYSICS, K::NUMBERS, PRESSURES, store, meaning, {}, {}, 2};
   };
-  static const std::vector<Keyword> table = {
+  static const KeywordTable table = {
     {"formulation", INTEGRATION, K::WORD, {"momentum", "second", "first"},
      [](A &a, const V &v) {
        a.scheme.formulation = v.is("first") ? Formulation::FIRST
@@ -161,11 +161,11 @@ const std::vector<std::string> &GearQuat::pressure_keywords()
   return names;
 }
 
-const std::vector<Rule> &GearQuat::keyword_rules()
+const KeywordRules &GearQuat::keyword_rules()
 {
   using R = Rule;
   static const std::vector<std::string> PRESSURE = pressure_keywords();
-  static const std::vector<Rule> rules = {
+  static const KeywordRules rules = {
     {{"preset"}, "paper", R::EXCLUDE, {"tolerance"}, {}, "the paper has constant steps"},
     {{"preset"}, "paper", R::REQUIRE, {"formulation"}, {"second", "first"}, "the paper has these"},
     {{"formulation", "values", "corrector", "start"}, "", R::EXCLUDE, {"tolerance"}, {},

@@ -76,15 +76,16 @@ bool Rule::is_for(const std::string &name) const
   return std::count(names.begin(), names.end(), name) > 0;
 }
 
-const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name, const Keyword *before)
+const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const KeywordTable &table,
+                                      const std::string &name, const Keyword *before)
 {
-  for (const auto &row : keyword_table())
+  for (const auto &row : table)
     if (row.name == name) return row;
   const std::string instead = instead_of_rigid_keyword(name);
   if (!instead.empty())
     lmp->error->all(FLERR, "Fix gear/quat has no keyword {} of the rigid fixes: {}", name, instead);
   std::vector<std::string> names;
-  for (const auto &row : keyword_table()) names.emplace_back(row.name);
+  for (const auto &row : table) names.emplace_back(row.name);
   const std::string values = before ? fmt::format("; {} takes {}", before->name, before->required())
                                     : "";
   lmp->error->all(FLERR, "Unknown fix gear/quat keyword: {}{}; the keywords are {}", name, values,
@@ -208,10 +209,10 @@ std::string default_cell(const Keyword &row)
 }
 
 /// A value in brackets belongs to the keyword of the row, any other to the other keyword.
-std::string rules_cell(const std::string &name, Rule::Kind kind)
+std::string rules_cell(const KeywordRules &rules, const std::string &name, Rule::Kind kind)
 {
   std::vector<std::string> parts;
-  for (const auto &rule : keyword_rules()) {
+  for (const auto &rule : rules) {
     if (rule.kind != kind || !rule.is_for(name)) continue;
     const std::string own = rule.own.empty() ? "" : fmt::format(" ({})", rule.own);
     if (kind == Rule::REQUIRE)
@@ -226,15 +227,15 @@ std::string rules_cell(const std::string &name, Rule::Kind kind)
 
 }    // namespace
 
-std::string GearQuat::list_of_keywords()
+std::string GearQuat::list_of_keywords(const KeywordTable &table, const KeywordRules &rules)
 {
   static const char *const KINDS[] = {"word", "integer", "number", "name", "mask", "numbers"};
   std::vector<std::vector<std::string>> lines = {
       {"keyword", "about", "kind", "values", "default", "requires", "excludes", "meaning"}};
-  for (const auto &row : keyword_table())
+  for (const auto &row : table)
     lines.push_back({row.name, row.about, KINDS[row.kind], row.required(), default_cell(row),
-                     rules_cell(row.name, Rule::REQUIRE), rules_cell(row.name, Rule::EXCLUDE),
-                     row.meaning});
+                     rules_cell(rules, row.name, Rule::REQUIRE),
+                     rules_cell(rules, row.name, Rule::EXCLUDE), row.meaning});
   std::vector<size_t> width(lines[0].size(), 1);
   for (const auto &line : lines)
     for (size_t n = 0; n + 1 < line.size(); ++n) width[n] = std::max(width[n], line[n].size());

@@ -3,7 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The keywords of the fix command: one table of keywords, and one table of rules between them.
+/* The form of the keywords of the fix command: a table of keywords, and a table of rules between them
+   (gear_quat_keyword_table.cpp).
 
    A row of the first table gives the words after a keyword, the default, the member that stores the
    value, and the meaning; a row of the second gives what keywords require or exclude.  The parser is
@@ -100,17 +101,14 @@ struct Rule {
   bool is_for(const std::string &name) const;
 };
 
-/// All rows, in the order of the manual.
-const std::vector<Keyword> &keyword_table();
-/// All rules, in the order in which they are checked.
-const std::vector<Rule> &keyword_rules();
-/// The keywords of constant pressure.
-const std::vector<std::string> &pressure_keywords();
+using KeywordTable = std::vector<Keyword>;
+using KeywordRules = std::vector<Rule>;
 
 /// The row of a keyword.  An unknown keyword ends the run on all ranks.  The message gives the
 /// equivalent of a keyword of the rigid fixes, otherwise the words allowed after the previous
 /// keyword, `before`.
-const Keyword &find_keyword(LAMMPS *lmp, const std::string &name, const Keyword *before = nullptr);
+const Keyword &find_keyword(LAMMPS *lmp, const KeywordTable &table, const std::string &name,
+                            const Keyword *before = nullptr);
 
 /// Returns true if `text` is an integer, and stores its value in `integer`.
 bool read_integer(const std::string &text, int &integer);
@@ -120,7 +118,7 @@ std::string alternatives(const std::vector<std::string> &words);
 
 /// The tables as text: a line of titles and a line for each keyword, whose columns are separated by
 /// two or more blanks; an empty cell is a hyphen.
-std::string list_of_keywords();
+std::string list_of_keywords(const KeywordTable &table, const KeywordRules &rules);
 
 /// Handles the words of fix_modify that the rigid fixes have and returns how many were used.  Ends
 /// the run on all ranks if this fix does not support the request.

@@ -10,7 +10,7 @@
 #define LMP_GEAR_QUAT_OUTPUTS_H
 
 #include "gear_quat_sites.h"
-#include "gear_quat_template.h"
+#include "gear_quat_given_bodies.h"
 
 #include <array>
 #include <string>

@@ -23,7 +23,7 @@
 
 #include "gear_quat_bodies.h"
 #include "gear_quat_extended.h"
-#include "gear_quat_infile.h"
+#include "gear_quat_given_bodies.h"
 #include "pointers.h"
 
 #include <array>

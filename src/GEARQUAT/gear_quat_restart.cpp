@@ -5,7 +5,7 @@
 
 #include "gear_quat_restart.h"
 
-#include "gear_quat_infile.h"
+#include "gear_quat_given_bodies.h"
 #include "gear_quat_outputs.h"
 #include "gear_quat_ranks.h"
 

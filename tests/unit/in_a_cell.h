@@ -7,7 +7,7 @@
 
 #include "gear_quat_cell.h"
 #include "gear_quat_chain.h"
-#include "gear_quat_scalar.h"
+#include "gear_quat_integrator.h"
 
 namespace InACell {
 

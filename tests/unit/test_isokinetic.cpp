@@ -3,7 +3,7 @@
 
 #include "checks.h"
 #include "drive.h"
-#include "gear_quat_scalar.h"
+#include "gear_quat_integrator.h"
 #include "tied_bodies.h"
 
 using namespace Drive;

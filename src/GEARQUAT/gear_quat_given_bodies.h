@@ -3,13 +3,22 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Insertion of bodies: molecules of a template, inserted by another fix (deposit, pour).  The body
+/* Bodies stated in a file, in the format of fix rigid's infile keyword:
+     N
+     ID mass x y z ixx iyy izz ixy ixz iyz vx vy vz lx ly lz ix iy iz      (N lines)
+   The inertia tensor and the angular momentum are in the space frame, the center of mass is in the
+   box and ix iy iz are its image flags.  Lines may end in a # comment; empty lines are ignored.
+
+   Insertion of bodies: molecules of a template, inserted by another fix (deposit, pour).  The body
    is made from its atoms, as at the start, unless the template gives a mass, a center or an inertia
    tensor that differ from the sums over its atoms. */
 
-#ifndef LMP_GEAR_QUAT_TEMPLATE_H
-#define LMP_GEAR_QUAT_TEMPLATE_H
+#ifndef LMP_GEAR_QUAT_GIVEN_BODIES_H
+#define LMP_GEAR_QUAT_GIVEN_BODIES_H
 
+#include "lmptype.h"
+
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,7 +29,23 @@ class Molecule;
 
 namespace LAMMPS_NS::GearQuat {
 
-class Ownership;
+/// A body as a line of the file has it.
+struct GivenBody {
+  double mass;
+  double center[3];     ///< wrapped, as in the file
+  double inertia[6];    ///< ixx iyy izz ixy ixz iyz, space frame
+  double velocity[3];
+  double angular_momentum_space[3];
+  int image[3];
+
+  static constexpr int NUMBERS = 16;    ///< before the image flags, in the order of the file
+};
+
+using GivenBodies = std::map<tagint, GivenBody>;
+
+/// Reads on rank 0, returns on all ranks; none for an empty filename.  Any error in the file ends
+/// the run on all ranks with a message that gives the file and line.
+GivenBodies read_given_bodies(LAMMPS *lmp, const std::string &filename);
 
 /// Properties given in a molecule template, in the frame of the template.
 struct StatedMolecule {
@@ -53,11 +78,8 @@ inline bool any_differs(const std::vector<StatedMolecule> &stated)
   return false;
 }
 
-/// Makes one body of the atoms that were just created on all ranks, from index `first` on; its ID
-/// is the smallest molecule ID of its atoms.  It is fresh: its history starts with the forces of
-/// this step.  Collective.
-void add_molecule(LAMMPS *lmp, Ownership &ownership, int first, const StatedMolecule *stated,
-                  const Insertion &insertion);
+/// The molecule of the template at its position, rotated.
+GivenBody given_at(const StatedMolecule &stated, const Insertion &at);
 
 }    // namespace LAMMPS_NS::GearQuat
 
