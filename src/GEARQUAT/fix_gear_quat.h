@@ -24,11 +24,11 @@ FixStyle(gear/quat,FixGearQuat);
 #include "gear_quat_driven_box.h"
 #include "gear_quat_fixes.h"
 #include "gear_quat_forces.h"
+#include "gear_quat_given_bodies.h"
 #include "gear_quat_minimize.h"
 #include "gear_quat_outputs.h"
 #include "gear_quat_restart.h"
 #include "gear_quat_step.h"
-#include "gear_quat_given_bodies.h"
 
 #include <cmath>
 #include <vector>

@@ -9,8 +9,8 @@
 #ifndef LMP_GEAR_QUAT_OUTPUTS_H
 #define LMP_GEAR_QUAT_OUTPUTS_H
 
-#include "gear_quat_sites.h"
 #include "gear_quat_given_bodies.h"
+#include "gear_quat_sites.h"
 
 #include <array>
 #include <string>
