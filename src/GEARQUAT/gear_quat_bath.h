@@ -28,8 +28,8 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_barostat.h"
-#include "gear_quat_isokinetic.h"
 #include "gear_quat_history.h"
+#include "gear_quat_isokinetic.h"
 #include "gear_quat_temperature.h"
 
 #include <functional>

@@ -25,12 +25,13 @@ class Blowup : protected Pointers {
  public:
   Blowup(LAMMPS *lmp, const Arguments &args, const Bodies &bodies, const Sites &sites,
          const Bath &bath) :
-      Pointers(lmp), args(args), bodies(bodies), sites(sites), bath(bath)
+      Pointers(lmp),
+      args(args), bodies(bodies), sites(sites), bath(bath)
   {
   }
 
-  std::vector<Rate> rates;               ///< the table of rates, as of its last look
-  MotionLimits limits;                   ///< for the current step and box
+  std::vector<Rate> rates;    ///< the table of rates, as of its last look
+  MotionLimits limits;        ///< for the current step and box
 
   /// Ends the run if the present loads would make an owned body unstable within a step h.  Atoms
   /// are at the positions of the loads; f: forces on them.
