@@ -24,17 +24,8 @@ class Motion;
 class Sums : protected Pointers {
  public:
   /// Elements of the vector, as listed in the manual.
-  enum {
-    KE_TRANSLATION,
-    KE_ROTATION,
-    NORM,
-    RADIAL,
-    MAX_POSITION,
-    RMS_POSITION,
-    MAX_ANGLE,
-    RMS_ANGLE,
-    ELEMENTS
-  };
+  static constexpr int KE_TRANSLATION = 0, KE_ROTATION = 1, NORM = 2, RADIAL = 3, MAX_POSITION = 4,
+                       RMS_POSITION = 5, MAX_ANGLE = 6, RMS_ANGLE = 7, ELEMENTS = 8;
 
   Sums(LAMMPS *lmp, const Bodies &bodies) : Pointers(lmp), bodies(bodies) {}
 
@@ -53,20 +44,9 @@ class Sums : protected Pointers {
 class BodyTable : protected Pointers {
  public:
   /// Columns, counted from 0; the first fifteen are as in fix rigid.
-  enum {
-    CENTER = 0,
-    VELOCITY = 3,
-    FORCE = 6,
-    TORQUE = 9,
-    IMAGE = 12,
-    QUATERNION = 15,
-    OMEGA_BODY = 19,
-    ANGULAR_MOMENTUM = 22,
-    POSITION_ERROR = 25,
-    ANGLE_ERROR = 26,
-    ID = 27,
-    COLUMNS = 28
-  };
+  static constexpr int CENTER = 0, VELOCITY = 3, FORCE = 6, TORQUE = 9, IMAGE = 12, QUATERNION = 15,
+                       OMEGA_BODY = 19, ANGULAR_MOMENTUM = 22, POSITION_ERROR = 25,
+                       ANGLE_ERROR = 26, ID = 27, COLUMNS = 28;
 
   BodyTable(LAMMPS *lmp, const Bodies &bodies, const Sites &sites) :
       Pointers(lmp), bodies(bodies), sites(sites)

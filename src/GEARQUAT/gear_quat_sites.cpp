@@ -38,16 +38,6 @@ Sites::Sites(LAMMPS *lmp, Bodies &bodies, Ownership &ownership) :
 {
 }
 
-int Sites::number() const
-{
-  return (int) sites.size();
-}
-
-const Site &Sites::operator[](int n) const
-{
-  return sites[n];
-}
-
 /* ----------------------------------------------------------------------
    the list
 ------------------------------------------------------------------------- */
@@ -318,39 +308,26 @@ Sites::Changes Sites::changes() const
   return {all[0] != 0, all[1], over_ranks(MPI_MAX, all[1] == here[1] ? body : 0, world)};
 }
 
-namespace {
-
-/// The owner atom of a body: unwrapped position, actual and according to the body.
-struct Owner {
-  double found[3] = {}, expected[3] = {};
-
-  void merge(const Owner &other)
-  {
-    add3(other.found, found);    // zero on all ranks but one
-    add3(other.expected, expected);
-  }
-};
-
-}    // namespace
-
 /// The user may have moved, rotated or deformed a body between two runs.  It is torn if its atoms
 /// are whole periods further apart than before, or if parts of it have moved with the faces of the
 /// box.
 void Sites::refuse_tears() const
 {
-  const std::vector<tagint> tags = ownership.owner_tags();
-  const Parts parts(comm, world, tags.data(), atom->nlocal);
-  std::vector<Owner> owners(parts.number());
+  struct Owner {    // its unwrapped position, actual and according to the body
+    double found[3], expected[3];
+  };
+  std::vector<Owner> owners(bodies.nhere());
   for (const Site &site : sites)
-    if (ownership.owned_by(site.atom) >= 0) {
-      Owner &owner = owners[parts.find(tags[site.atom])];
-      unwrapped(site, owner.found, owner.expected);
-    }
-  parts.merge(owners);
+    if (ownership.owned_by(site.atom) >= 0)
+      unwrapped(site, owners[site.body].found, owners[site.body].expected);
+  if (bodies.have_copies()) {
+    ownership.sum(owners);
+    ownership.spread(owners);
+  }
 
   tagint here[3] = {0, 0, 0};    // bodies that are torn, cut by the box, or have another shape
   for (const Site &site : sites) {
-    const Owner &owner = owners[parts.find(tags[site.atom])];
+    const Owner &owner = owners[site.body];
     double found[3], expected[3], before[3], now[3], change[3];
     unwrapped(site, found, expected);
     for (int k = 0; k < 3; ++k) {

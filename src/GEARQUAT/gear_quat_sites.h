@@ -37,10 +37,10 @@ class Sites : protected Pointers {
 
   // body by body; within a body sites at its center of mass first, then by local index
 
-  int number() const;
+  int number() const { return (int) sites.size(); }
   const Site *begin() const { return sites.data(); }
   const Site *end() const { return begin() + sites.size(); }
-  const Site &operator[](int n) const;
+  const Site &operator[](int n) const { return sites[n]; }
 
   /// Lists the sites of all bodies, after atoms were exchanged or bodies were made.
   void list();

@@ -22,7 +22,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <type_traits>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -711,46 +710,37 @@ void Step::place_prediction()
 
 void Step::correct(double **f)
 {
-  if (!bath.acts()) {
-    args.masks.empty() ? correct_bodies<false>(f) : correct_bodies<true>(f);
+  if (bath.acts()) {
+    if (tolerance) tolerance->note_prediction();
+    bath.correct(*integrator, scheme().coupled_passes());
+    if (tolerance) tolerance->note_correction(*integrator, bath);
     return;
   }
-  if (tolerance) tolerance->note_prediction();
-  bath.correct(*integrator, scheme().coupled_passes());
-  if (tolerance) tolerance->note_correction(*integrator, bath);
+  for (const int ibody : bodies.points) correct_body(ibody, true, f);
+  for (const int ibody : bodies.tops) correct_body(ibody, false, f);
 }
 
-/// MASKED: some components of the loads are turned off.
-template <bool MASKED> void Step::correct_bodies(double **f)
-{
-  const auto correct_all = [&](auto changing) {
-    for (const int ibody : bodies.points) correct_body<MASKED, true, changing>(ibody, f);
-    for (const int ibody : bodies.tops) correct_body<MASKED, false, changing>(ibody, f);
-  };
-  tolerance ? correct_all(std::true_type()) : correct_all(std::false_type());
-}
-
-/// POINT: without moments of inertia.  CHANGING: the time step adapts to the error.
-template <bool MASKED, bool POINT, bool CHANGING> void Step::correct_body(int ibody, double **f)
+/// is_point: without moments of inertia.
+inline void Step::correct_body(int ibody, bool is_point, double **f)
 {
   double *rows = bodies.history(ibody);
-  const RigidBody &rigid = bodies.rigid_of(ibody);
-  const Load masked = MASKED ? bodies.acting(ibody) : Load();
-  const Load &load = MASKED ? masked : bodies.load_of(ibody);
-  BodyState &state = bodies.change_state(ibody);
-  const BodyState before = MASKED ? state : BodyState();
+  const Body &body = bodies.body_at(ibody);
+  const Load load = bodies.acting(ibody);
+  BodyState &state = bodies.change_state(ibody), before;
+  if (body.off) before = state;
   Correction &last = bodies.change_last(ibody);
-  if (CHANGING)
+  if (tolerance)
     last = tolerance->correct(*integrator, ibody, load);
+  else if (is_point)
+    last = integrator->correct_center(body.rigid, load, rows);
   else
-    last = POINT ? integrator->correct_center(rigid, load, rows)
-                 : integrator->correct(rigid, load, bodies.axes(ibody), rows);
-  if (POINT)
-    integrator->center_state(rigid, rows, state);
+    last = integrator->correct(body.rigid, load, bodies.axes(ibody), rows);
+  if (is_point)
+    integrator->center_state(body.rigid, rows, state);
   else
-    integrator->body_state(rigid, rows, state, bodies.change_frame(ibody));
-  if (MASKED) last.work = work_between(bodies.load_of(ibody), before, state);
-  if (!CHANGING) watch(ibody, f);
+    integrator->body_state(body.rigid, rows, state, bodies.change_frame(ibody));
+  if (body.off) last.work = work_between(bodies.load_of(ibody), before, state);
+  if (!tolerance) watch(ibody, f);
 }
 
 /// Restores the histories to the beginning of the step, for another try.

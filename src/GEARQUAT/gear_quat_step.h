@@ -162,21 +162,9 @@ class Step : protected Pointers {
   std::string movers;              ///< IDs of the other fixes that moved atoms in the last steps
 
   /// Settings in a restart file: histories continue only if the keywords before TUNED are the same.
-  enum {
-    FORMULATION,
-    VALUES,
-    COMPENSATE,
-    TOLERANCE,
-    ISOKINETIC,
-    TEMP,
-    TCHAIN,
-    BOX,
-    PCHAIN,
-    TUNED,
-    STATES_CORRECTOR,
-    STARTED,
-    SETTINGS
-  };
+  static constexpr int FORMULATION = 0, VALUES = 1, COMPENSATE = 2, TOLERANCE = 3, ISOKINETIC = 4,
+                       TEMP = 5, TCHAIN = 6, BOX = 7, PCHAIN = 8, TUNED = 9, STATES_CORRECTOR = 10,
+                       STARTED = 11, SETTINGS = 12;
   using Settings = std::array<double, SETTINGS>;
   Settings of_file = {};
   Settings settings() const;
@@ -231,8 +219,7 @@ class Step : protected Pointers {
   void predict(double **f);
   void place_prediction();
   void correct(double **f);
-  template <bool MASKED> void correct_bodies(double **f);
-  template <bool MASKED, bool POINT, bool CHANGING> void correct_body(int ibody, double **f);
+  void correct_body(int ibody, bool is_point, double **f);
   void shorten();
   void accept(double **f);
   void watch(int ibody, double **f);
