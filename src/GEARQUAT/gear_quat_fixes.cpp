@@ -190,7 +190,7 @@ std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
     if (one->nevery > 0 && step % one->nevery == 0) acted.push_back(one);
   if (acted.empty()) return changed;
   const auto before = bodies.snapshot();    // with the loads of the last step
-  if (!gather_impulses()) return changed;
+  if (!sites.gather_impulses()) return changed;
 
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     const RigidBody &rigid = bodies.rigid_of(ibody);
@@ -229,19 +229,6 @@ std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
   bodies.put_back_states(before);
   ownership.spread_states();
   return {};
-}
-
-/// Differences of momentum and angular momentum between atoms and their bodies, as loads.  False if
-/// there are none on any rank.  Collective.
-bool OtherFixes::gather_impulses()
-{
-  int differs = 0;
-  for (const Site &site : sites)
-    if (!sites.is_as_fast(site)) differs = 1;
-  if (!over_ranks(MPI_MAX, differs, world)) return false;
-
-  sites.gather_impulses();
-  return true;
 }
 
 /* ----------------------------------------------------------------------

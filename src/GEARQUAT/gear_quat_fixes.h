@@ -85,7 +85,6 @@ class OtherFixes : protected Pointers {
 
   void warn_of_noise();
   void refuse(Fix *other, const Style &row, tagint atom) const;
-  bool gather_impulses();
   void warn(const Site &site, const char *what);
   std::string names(const std::vector<const Fix *> &fixes) const;
 };

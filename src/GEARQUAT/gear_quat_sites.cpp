@@ -394,23 +394,23 @@ void Sites::sum_over_sites(Start start, Add add, Finish finish) const
   }
 }
 
-/// The loads of all bodies from the forces on the sites; force_on(site) is a pointer to a force.
-template <class Force> void Sites::gather(Force force_on, double **torque)
+/// The loads of all bodies from the forces on the sites: three numbers of each owned atom.
+void Sites::gather(const double *forces, double **torque)
 {
   std::vector<Load> &loads = bodies.change_loads();
   sum_over_sites(
       [](int) {
         return Load();
       },
-      [&](Load &sum, const Site &site, const double *arm) {
-        const double *f = force_on(site);
+      [forces](Load &sum, const Site &site, const double *arm) {
+        const double *f = forces + 3 * (size_t) site.atom;
         add3(f, sum.force);
         if (!arm) return;
         double moment[3];
         cross3(arm, f, moment);
         add3(moment, sum.torque_space);
       },
-      [&](int ibody, const Load &sum) {
+      [&loads](int ibody, const Load &sum) {
         loads[ibody] = sum;
       });
   if (!extended.sites.empty()) extended.add_torques(torque, loads);
@@ -435,26 +435,23 @@ void Sites::expect_forces(bool any)
 
 void Sites::gather_loads(double **f, double **torque)
 {
-  if (!any_forces) return;
-  const double *const all = first_of(f);
-  gather(
-      [all](const Site &site) {
-        return all + 3 * (size_t) site.atom;
-      },
-      torque);
+  if (any_forces) gather(first_of(f), torque);
 }
 
-void Sites::gather_impulses()
+bool Sites::gather_impulses()
 {
-  double impulse[3];
-  gather(
-      [this, &impulse](const Site &site) {
-        const Expected expected = expected_velocity(site);
-        const double mass = ownership.mass_of(site.atom) / force->ftm2v;
-        for (int k = 0; k < 3; ++k) impulse[k] = mass * (atom->v[site.atom][k] - expected.value[k]);
-        return impulse;
-      },
-      nullptr);
+  std::vector<double> impulses(3 * (size_t) atom->nlocal);
+  int differs = 0;
+  for (const Site &site : sites) {
+    const Expected expected = expected_velocity(site);
+    const double mass = ownership.mass_of(site.atom) / force->ftm2v, *v = atom->v[site.atom];
+    if (!near(v, expected, SAME)) differs = 1;
+    for (int k = 0; k < 3; ++k)
+      impulses[3 * (size_t) site.atom + k] = mass * (v[k] - expected.value[k]);
+  }
+  if (!over_ranks(MPI_MAX, differs, world)) return false;
+  gather(impulses.data(), nullptr);
+  return true;
 }
 
 void Sites::add_arm_virial(double **f, ExactSum *sums, double scale) const

@@ -108,7 +108,8 @@ class Sites : protected Pointers {
   /// of the atoms themselves, used for extended atoms; null for none.
   void gather_loads(double **f, double **torque);
   /// Sums the momenta due to differences between velocities of atoms and their bodies, as loads.
-  void gather_impulses();
+  /// False, without sums, if there are none on any rank.  Collective.
+  bool gather_impulses();
 
   /// Adds the products of forces on owned sites and their arms, f_a d_b for xx yy zz yz xz xy: as
   /// exact sums of this scale over the bodies.
@@ -155,7 +156,7 @@ class Sites : protected Pointers {
   template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place_points();
   template <class Start, class Add, class Finish>
   void sum_over_sites(Start start, Add add, Finish finish) const;
-  template <class Force> void gather(Force force_on, double **torque);
+  void gather(const double *forces, double **torque);
   std::vector<Load> centroids();
 };
 
