@@ -725,7 +725,8 @@ inline void Step::correct_body(int ibody, bool is_point, double **f)
 {
   double *rows = bodies.history(ibody);
   const Body &body = bodies.body_at(ibody);
-  const Load load = bodies.acting(ibody);
+  const Load masked = body.off ? bodies.acting(ibody) : Load();
+  const Load &load = body.off ? masked : bodies.load_of(ibody);
   BodyState &state = bodies.change_state(ibody), before;
   if (body.off) before = state;
   Correction &last = bodies.change_last(ibody);

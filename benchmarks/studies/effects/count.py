@@ -19,7 +19,7 @@ HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial_integrate|final_integrate|
 FIX = re.compile(r"LAMMPS_NS::(FixGearQuat|GearQuat::Step)::")
 ASIDE = re.compile(
     r"FixGearQuat::show_bodies\(|GearQuat::Step::start\(|Comm\w+::forward_comm\(int\)"
-    r"|GearQuat::OtherFixes::(check|note|take)_\w+\("
+    r"|GearQuat::OtherFixes::(watch|take)_\w+\("
 )
 ADDRESS = re.compile("0x[0-9a-f]+")
 FORCES = re.compile(r"LAMMPS_NS::Pair\w+::compute\(int, int\)")

@@ -25,7 +25,7 @@ TEMP = "temp 300.0 300.0 0.1"
 #: functions that solve a chain once per step: their instructions depend on the motion, not on the number of bodies
 ONCE_A_STEP = r"GearQuat::Chain(Drive)?::"
 #: functions that correct all bodies together
-TOGETHER = r"|GearQuat::(Step::correct_together|Bath::(correct|add|find_friction)\\()"
+TOGETHER = r"|GearQuat::Bath::(correct|add|find_friction)\("
 SET = "set group all"
 PERIODIC = replace(FULL, boundary="p p p")
 UNSIZED, SIZED = (
@@ -110,7 +110,7 @@ EFFECTS = (
         "masks",
         moved(words="force * on on off"),
         MOVED,
-        own=r"correct_bodies<true>|GearQuat::Bodies::acting",
+        own=r"GearQuat::(Bodies::acting|acting_load|work_between)\(",
     ),
     Effect(
         "isokinetic",
