@@ -209,7 +209,6 @@ void FixGearQuat::setup_pre_neighbor()
 void FixGearQuat::setup(int vflag)
 {
   const bool first = !step.had_run();
-  step.readers = readers_at_end(lmp, this);
   ownership.spread_states();
   if (first) other_fixes.warn_of_gravity();
   step.gather(atom->f, atom->torque);
@@ -274,7 +273,7 @@ void FixGearQuat::end_step(double **f, double **torque)
   step.end(f, torque);
   sites.advance_densities(update->dt);
   if (box_change != NO_BOX_CHANGE) ownership.note_box();
-  if (step.has_readers()) show_bodies();
+  if (reads_at_end(lmp, this)) show_bodies();
   if (step.bath.box.is_tilted()) next_reneighbor = update->ntimestep + 1;
   compare_calls(world);
 }

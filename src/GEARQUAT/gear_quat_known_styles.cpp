@@ -12,10 +12,11 @@
 #include "force.h"
 #include "lammps.h"
 #include "modify.h"
+#include "output.h"
 #include "pair.h"
+#include "update.h"
 #include "utils.h"
 
-#include <algorithm>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -28,27 +29,19 @@ using namespace Fact;
 ------------------------------------------------------------------------- */
 
 static constexpr Style PAIRS[] = {
-    {"^[emst]?dpd", UNREPEATABLE | RANDOM,
-     "friction and a random force on every pair, but not in mdpd/rhosum"},
-    {"^gran", UNREPEATABLE | DISSIPATIVE,
-     "histories of contacts grow, but not in gran/hooke; forces set in, and are damped, where "
-     "particles touch"},
-    {"^brownian", UNREPEATABLE | RANDOM | BACKGROUND,
-     "friction and random forces of a fluid at rest, scaled by the time step"},
+    {"^[emst]?dpd", UNREPEATABLE | RANDOM, "friction and random forces, but not mdpd/rhosum"},
+    {"^gran", UNREPEATABLE | DISSIPATIVE, "histories of contacts, but not in gran/hooke; friction"},
+    {"^brownian", UNREPEATABLE | RANDOM | BACKGROUND, "forces of a fluid, by the time step"},
     {"^dsmc", UNREPEATABLE | RANDOM, "random collisions change velocities"},
-    {"^reax", UNREPEATABLE, "fix qeq finds its charges, beginning with charges of earlier steps"},
-    {"^bpm", UNREPEATABLE | DISSIPATIVE,
-     "no memory of its own, but it is used with bonds bpm, which break; friction as gran"},
+    {"^reax", UNREPEATABLE, "charges of fix qeq depend on earlier steps"},
+    {"^bpm", UNREPEATABLE | DISSIPATIVE, "used with bonds bpm, which break; friction"},
     {"^amoeba", UNREPEATABLE, "induced dipoles are predicted from earlier evaluations"},
     {"^hippo", UNREPEATABLE, "as amoeba"},
     {"^tracker", UNREPEATABLE, "keeps and counts contacts"},
     {"^peri", UNREPEATABLE, "bonds break, and peri/ves has a viscoelastic history"},
-    {"^rheo", UNREPEATABLE | DISSIPATIVE,
-     "viscosity; reads kernels and interfaces that fix rheo computes once in a step"},
-    {"^smd", UNREPEATABLE | DISSIPATIVE,
-     "viscosity; deformations, stresses and damage are integrated by every evaluation"},
-    {"^lubricate", DISSIPATIVE | BACKGROUND,
-     "friction of the fluid between particles, and a flow if there is one"},
+    {"^rheo", UNREPEATABLE | DISSIPATIVE, "reads what fix rheo computes once in a step; viscosity"},
+    {"^smd", UNREPEATABLE | DISSIPATIVE, "every evaluation integrates damage; viscosity"},
+    {"^lubricate", DISSIPATIVE | BACKGROUND, "friction of the fluid between particles"},
     {"^sph", DISSIPATIVE, "viscosity"},
     {"^mesocnt/viscous", DISSIPATIVE, "friction between tubes"},
     {"^hybrid/scaled", READS_VARIABLES, "factors of its styles are numbers or variables"},
@@ -81,8 +74,7 @@ static constexpr char ONE[] = "unfix one of the two";
 static constexpr Style FIXES[] = {
     {"^addforce", REPEATABLE, "constants, or variables of positions and the time"},
     {"^efield", REPEATABLE, "charges and dipoles in a field of constants, variables or positions"},
-    {"^enforce2d", REPEATABLE | WITHOUT_VARIABLES | NO_FORCE,
-     "sets components along z to 0, where nothing is held"},
+    {"^enforce2d", REPEATABLE | WITHOUT_VARIABLES | NO_FORCE, "sets components along z to 0"},
     {"^freeze$", REPEATABLE | WITHOUT_VARIABLES, "sets forces and torques to 0"},
     {"^gravity", REPEATABLE, "mass times a constant or variable"},
     {"^indent$", REPEATABLE, "a function of positions and variables"},
@@ -96,8 +88,7 @@ static constexpr Style FIXES[] = {
     {"^wall/lj", REPEATABLE, "as wall/harmonic: wall/lj93, wall/lj126 and wall/lj1043"},
     {"^wall/morse", REPEATABLE, "as wall/harmonic"},
     {"^wall/colloid", REPEATABLE, "as wall/harmonic"},
-    {"^wall/region$", REPEATABLE,
-     "a function of positions and the region, which may follow variables"},
+    {"^wall/region$", REPEATABLE, "a function of positions; the region may follow variables"},
     {"^wall/table", REPEATABLE, "as wall/harmonic"},
     {"^OMP", THREADS, "FixOMP::pre_force() calls ThrData::init_force()"},
     {"^store/force", NO_FORCE, "copies forces"},
@@ -106,25 +97,19 @@ static constexpr Style FIXES[] = {
     {"^INTEL", NO_FORCE, "adds up what threads have computed"},
     {"^GPU", NO_FORCE, "receives what a device has computed"},
     {"^langevin", RANDOM | THERMOSTAT | SINGLE | AT_INTEGRATION,
-     "random forces with friction; with gjf it exchanges velocities and scales forces before the "
-     "step",
-     "leave out its keyword gjf"},
+     "with gjf it also changes velocities", "leave out its keyword gjf"},
     {"^brownian", RANDOM, "random displacements, and it integrates itself"},
-    {"^gle", RANDOM | THERMOSTAT,
-     "random changes of velocities with memory, and it integrates itself"},
+    {"^gle", RANDOM | THERMOSTAT, "random changes of velocities with memory"},
     {"^gld", RANDOM | THERMOSTAT, "random forces with memory, and it integrates itself"},
     {"^ttm", RANDOM, "random forces by the temperature of electrons"},
     {"^qtb", RANDOM, "random forces with memory, with friction"},
-    {"^srd", RANDOM | BESIDE_GROUP,
-     "its particles collide with atoms of another group, each a force of one step"},
+    {"^srd", RANDOM | BESIDE_GROUP, "collisions with atoms of another group, each in a step"},
     {"^wall/gran", DISSIPATIVE | FIRST_RIGID,
-     "forces set in, and are damped, where particles touch it; init() stops its search at the "
-     "first fix with rigid_flag"},
+     "contacts; init() stops at the first fix with rigid_flag"},
     {"^damping/cundall", DISSIPATIVE, "its forces change sign with velocities"},
     {"^temp/", THERMOSTAT, "scales velocities, or mixes them with random ones"},
     {"^dt/reset", TIME_STEP, "sets update->dt by velocities and forces"},
-    {"^rigid", BODY_OF_ATOMS,
-     "FixRigid::extract() gives its array body; of rigid/small it is filled after init()"},
+    {"^rigid", BODY_OF_ATOMS, "FixRigid::extract(); of rigid/small it is filled after init()"},
     {"^deform", CARRIES_BODIES, "with remap x; with v and none no atom is moved"},
     {"^np[th]$", CARRIES_BODIES, "FixNH::remap()"},
     {"^np[th]/[abceigos]", CARRIES_BODIES, "variants of npt and nph, but not npt/uef and npt/kk"},
@@ -141,48 +126,39 @@ static constexpr Style FIXES[] = {
     {"^temp/berendsen", TEMPERATURE, "one factor for all"},
     {"^temp/csvr", TEMPERATURE, "one factor for all"},
     {"^heat$", TEMPERATURE, "one factor, and one velocity subtracted"},
-    {"^wall/reflect", REFLECTION, "mirrors positions and velocities of atoms beyond the wall",
-     WALL},
+    {"^wall/reflect", REFLECTION, "mirrors atoms beyond the wall", WALL},
     {"^wall/piston$", REFLECTION, "as wall/reflect", WALL},
     {"^temp/csld", SINGLE, "mixes each velocity with a random one", TEMP},
-    {"^temp/rescale/eff", SINGLE,
-     "scales radial velocities of electrons too, by a temperature of both", TEMP},
-    {"^lambda_thermostat", SINGLE | THERMOSTAT,
-     "changes velocities of some atoms at a time (later than 4 Feb 2025)", TEMP},
+    {"^temp/rescale/eff", SINGLE, "scales radial velocities of electrons, too", TEMP},
+    {"^lambda_thermostat", SINGLE | THERMOSTAT, "changes some velocities at a time", TEMP},
     {"^ehex", SINGLE, "displaces atoms besides scaling velocities",
      "use fix heat without a region, on groups of whole bodies"},
     {"^thermal/conductivity", SINGLE, "exchanges the energies of two atoms", GROUP},
     {"^viscosity", SINGLE, "exchanges momenta of two atoms", GROUP},
     {"^oneway", SINGLE, "reverses velocities of atoms in a region", GROUP},
     {"^shardlow", SINGLE, "random changes of velocities, pair by pair", GROUP},
-    {"^lb/momentum", SINGLE, "subtracts the velocity of atoms and fluid together",
-     "use fix momentum"},
-    {"^lb/viscous", SINGLE, "fluid and atoms exchange momentum in each step, whatever its length",
+    {"^lb/momentum", SINGLE, "subtracts a velocity of the fluid, too", "use fix momentum"},
+    {"^lb/viscous", SINGLE, "exchanges momentum with the fluid in each step",
      "use fix rigid for them"},
     {"^wall/flow", SINGLE, "gives a new random velocity to atoms that pass a plane", GROUP},
     {"^smd/setvel", SINGLE, "sets velocities", GROUP},
-    {"^sph/stationary", SINGLE, "advances densities and energies, as this fix does for bodies",
-     GROUP},
+    {"^sph/stationary", SINGLE, "advances densities, as this fix does", GROUP},
     {"^tmd$", SINGLE, "moves atoms towards a target", "use fix spring or fix spring/self"},
-    {"^recenter", SINGLE | ANY, "shifts positions of atoms, or of another group with keyword shift",
+    {"^recenter", SINGLE | ANY, "shifts positions, also of another group",
      "use fix momentum, and subtract the center of mass in the analysis"},
     {"^shake", SINGLE | CONSTRAINED, "subtracts the degrees of freedom as well", BONDS},
     {"^rattle", SINGLE | CONSTRAINED, "as shake, and corrects velocities", BONDS},
-    {"^ilves", SINGLE | CONSTRAINED, "as shake (later than 4 Feb 2025)", BONDS},
+    {"^ilves", SINGLE | CONSTRAINED, "as shake", BONDS},
     {"^atom/swap", SINGLE, "exchanges types of two atoms", GROUP},
     {"^mol/swap", SINGLE, "exchanges types of atoms of a molecule", GROUP},
-    {"^neighbor/swap", SINGLE, "exchanges types of two atoms (later than 4 Feb 2025)", GROUP},
+    {"^neighbor/swap", SINGLE, "exchanges types of two atoms", GROUP},
     {"^sgcmc", SINGLE, "changes types of atoms", GROUP},
-    {"^gcmc", EXCHANGE,
-     "inserts and removes atoms or, with mol and rigid, whole bodies; without rigid it may move "
-     "them",
+    {"^gcmc", EXCHANGE, "with mol and rigid it inserts and removes whole bodies",
      "to exchange whole bodies use its keywords mol and rigid, without MC moves, and keyword mol "
      "of fix gear/quat"},
     {"^charge/regulation", SINGLE, "inserts and removes ions", GROUP},
-    {"^gemc", SINGLE | ANY,
-     "exchanges atoms between two boxes and changes these (later than 4 Feb 2025)", ONE},
-    {"^hmc", SINGLE | ANY,
-     "puts back atoms and knows bodies of rigid/small alone (later than 4 Feb 2025)",
+    {"^gemc", SINGLE | ANY, "exchanges atoms between two boxes and changes these", ONE},
+    {"^hmc", SINGLE | ANY, "puts back atoms and knows rigid/small alone",
      "use fix rigid/small with fix hmc"},
     {"^pimd", SINGLE, "integrates beads of a ring polymer", GROUP},
     {"^ipi", SINGLE | ANY, "takes positions and the box from a server", ONE},
@@ -295,14 +271,15 @@ bool GearQuat::makes_forces(LAMMPS *lmp, const Fix *owner)
   return false;
 }
 
-std::vector<int> GearQuat::readers_at_end(LAMMPS *lmp, const Fix *owner)
+bool GearQuat::reads_at_end(LAMMPS *lmp, const Fix *owner)
 {
-  std::vector<int> periods;
+  const bigint now = lmp->update->ntimestep;
+  if (lmp->output->next == now) return true;
   for (auto *other : lmp->modify->get_fix_list())
-    if (other != owner && other->nevery > 0 && (lmp->modify->get_fix_mask(other) & END_OF_STEP) &&
-        !std::count(periods.begin(), periods.end(), other->nevery))
-      periods.push_back(other->nevery);
-  return periods;
+    if (other != owner && other->nevery > 0 && now % other->nevery == 0 &&
+        (lmp->modify->get_fix_mask(other) & END_OF_STEP))
+      return true;
+  return false;
 }
 
 std::vector<std::string> GearQuat::repeatable_forces(LAMMPS *lmp)

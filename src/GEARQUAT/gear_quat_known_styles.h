@@ -88,9 +88,8 @@ bool makes_forces(LAMMPS *lmp, const Fix *owner);
 /// The name of a style that reads velocities between prediction and correction, or empty.  owner:
 /// the calling fix.
 std::string reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner);
-/// The intervals in steps at which other fixes may read data at the end of a step; each number
-/// once.
-std::vector<int> readers_at_end(LAMMPS *lmp, const Fix *owner);
+/// True if an output or another fix may read data at the end of the present step.
+bool reads_at_end(LAMMPS *lmp, const Fix *owner);
 /// One line for each style: whether its forces can be evaluated again.
 std::vector<std::string> repeatable_forces(LAMMPS *lmp);
 /// False for no style and for style zero, of pairs, bonds, angles, dihedrals or impropers.

@@ -15,7 +15,6 @@
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
-#include "output.h"
 #include "update.h"
 #include "utils.h"
 
@@ -634,7 +633,7 @@ void Step::end(double **f, double **torque)
   accept(f);
   if (bodies.have_copies()) ownership.spread_moved();
   sites.place(true);
-  if (has_readers()) comm->forward_comm();    // ghosts are where forces were evaluated
+  if (reads_at_end(lmp, fix)) comm->forward_comm();    // ghosts are where forces were evaluated
 }
 
 void Step::gather(double **f, double **torque)
@@ -805,14 +804,6 @@ void Step::watch_all(double **f)
 {
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list) watch(ibody, f);
-}
-
-bool Step::has_readers() const
-{
-  const bigint now = update->ntimestep;
-  return output->next == now || std::any_of(readers.begin(), readers.end(), [now](int period) {
-           return now % period == 0;
-         });
 }
 
 /* ----------------------------------------------------------------------

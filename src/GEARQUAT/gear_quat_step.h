@@ -109,8 +109,6 @@ class Step : protected Pointers {
   void choose_next();
   /// Loads of bodies from the forces on atoms that LAMMPS has just evaluated.
   void gather(double **f, double **torque);
-  /// True if an output or another fix may read data at the end of this step.
-  bool has_readers() const;
 
   // elements of the fix's vector after the elements of Sums
 
@@ -144,7 +142,6 @@ class Step : protected Pointers {
   TimeStep time_step;
   std::unique_ptr<Tolerance> tolerance;    ///< null: the step is LAMMPS' own
   Bath bath;
-  std::vector<int> readers;       ///< periods of other fixes that read data at the end of a step
   bool velocities_read = true;    ///< by other styles, between begin() and end()
 
  private:

@@ -205,7 +205,7 @@ NOT_IN_A_FILE = {
         COMMAND: "masks args present",
         OTHERS: "fix fleet bodies ownership others blowup tally",
         DERIVED: "integrator started",
-        RUN: "phase edge_of_start of_file readers velocities_read",
+        RUN: "phase edge_of_start of_file velocities_read",
         STEP: "vflag_of_step",
         MESSAGES: "warned",
     },
