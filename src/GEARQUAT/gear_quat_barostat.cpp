@@ -46,19 +46,11 @@ static constexpr double ROUNDING = 1.0e-12;
 
 /* ---------------------------------------------------------------------- */
 
-ChainDrive GearQuat::drive_of(const Collocation &collocation, const Collocation::Scalar &twice)
-{
-  double at[ChainDrive::MOST];
-  const int points = 2 * twice.pairs + 1;
-  for (int i = 0; i < points; ++i) at[i] = i - twice.pairs;
-  return ChainDrive::through(points, at, collocation.rate_at_start(twice) - twice.pairs);
-}
-
 Barostat::Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sites,
                    const PressureWords &pressure, Temperature &temperature) :
     Pointers(lmp),
     fix(fix), bodies(bodies), asked(pressure), is_asked(asked.any()), temperature(temperature),
-    box(lmp, pressure.fixed), now{CellHistory(), Chain(std::max(1, pressure.length))}, kept(now)
+    box(lmp, pressure.fixed)
 {
   if (!moves()) return;
   virial.emplace(lmp, fix, sites);
@@ -69,7 +61,7 @@ void Barostat::set_scheme(const Scheme &scheme)
 {
   if (!moves()) return;
   changing_step = scheme.remembers;
-  now.cell.set_scheme(scheme);
+  cell.set_scheme(scheme);
   frequency.set_fastest(fastest_oscillation(CellHistory::scheme_of(scheme)));
 }
 
@@ -119,20 +111,13 @@ double Barostat::twice_kinetic() const
   return sum;
 }
 
-/// Coupled directions have one degree of freedom.
-int Barostat::free_components() const
+int Barostat::freedoms() const
 {
   int count = 0;
   for (int k = 0; k < Upper::SIZE; ++k) count += asked.on[k] && (k >= 3 || asked.tied[k] == k);
   return count;
 }
 
-ChainTarget Barostat::target_of_chain(double steps_ahead, double h) const
-{
-  return temperature.target(free_components(), period(), steps_ahead, h);
-}
-
-/// The shortest damping time.
 double Barostat::period() const
 {
   double shortest = HUGE_VAL;
@@ -142,7 +127,7 @@ double Barostat::period() const
 }
 
 /// Only directions that move contribute.
-double Barostat::mean_target(const Upper &pressures) const
+double Barostat::mean_of(const Upper &pressures) const
 {
   double sum = 0.0, directions = 0.0;
   for (int k = 0; k < 3; ++k)
@@ -167,22 +152,15 @@ void Barostat::find_target(bigint step, double h)
   }
 }
 
-/// Advances the target from the start to another time.
-void Barostat::move_target(double time)
-{
-  present.target = target_at_start + present.target_rate.scaled(time);
-  time_of_node = time;
-}
-
 /// G' without the friction of the box.
 Upper Barostat::drive() const
 {
   Upper found;
-  const Upper mass = masses(), &tensor = temperature.tensor;
+  const Upper mass = masses(), aim = target(), &tensor = temperature.tensor;
   const double v = volume(), trace = tensor.trace();
   for (int k = 0; k < Upper::SIZE; ++k) {
     if (!asked.on[k]) continue;
-    double push = tensor[k] + virial->value()[k] - present.target[k] * v;
+    double push = tensor[k] + virial->value()[k] - aim[k] * v;
     if (k < 3) push += weight_of(k) * trace;
     found[k] = push / mass[k];
   }
@@ -206,10 +184,11 @@ double Barostat::rate_of_heat() const
 {
   if (!moves()) return 0.0;
   double sum = 0.0;
-  const double mean = mean_target(present.target), v = volume();
+  const Upper aim = target();
+  const double mean = mean_of(aim), v = volume();
   for (int k = 0; k < Upper::SIZE; ++k)
-    if (asked.on[k]) sum += v * (present.target[k] - (k < 3 ? mean : 0.0)) * rate[k];
-  sum -= v * mean_target(present.target_rate);
+    if (asked.on[k]) sum += v * (aim[k] - (k < 3 ? mean : 0.0)) * rate[k];
+  sum -= v * mean_of(present.target_rate);
   const double kt_rate = width != 0.0 ? temperature.line.kt_step / width : 0.0;
   return sum - 0.5 * kt_rate / kt() * twice_kinetic();
 }
@@ -218,20 +197,20 @@ double Barostat::rate_of_heat() const
 void Barostat::combine(const Friction &alpha)
 {
   const double weights[3] = {weight_of(0), weight_of(1), weight_of(2)};
-  inverse = matrix.inverse();
-  of_bodies = CellFriction(alpha, matrix, rate, weights);
+  of_bodies = CellFriction(alpha, box.matrix(), rate, weights);
 }
 
 /// M and G of the history.
 void Barostat::note_rates(double h)
 {
-  matrix = now.cell.matrix();
-  if (h != 0.0) rate = now.cell.rate(h);
+  box.set(cell.matrix());
+  if (h != 0.0) rate = cell.rate(h);
 }
 
 /// LAMMPS' box becomes this one, and states, which are scaled, become unscaled.
-void Barostat::show(const Upper &deformation)
+void Barostat::show(const Upper &deformation, const Upper &its_rate)
 {
+  rate = its_rate;
   box.set(deformation);
   box.show(true);
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) box.to_space(bodies.change_state(ibody));
@@ -245,12 +224,11 @@ void Barostat::predict(double h)
 {
   if (changing_step) {
     times.prepare(h);
-    now.cell.set_coefficients(times.coefficients());
+    cell.set_coefficients(times.coefficients());
   }
-  now.cell.predict();
-  note_rates(h);
-  refuse_box();
-  show(matrix);
+  cell.predict();
+  refuse_box(cell.matrix());
+  show(cell.matrix(), cell.rate(h));
 }
 
 void Barostat::choose_coefficients(CorrectorCoefficients::Array &c, int values) const
@@ -274,7 +252,6 @@ void Barostat::measure(const Friction &alpha)
 {
   if (!moves()) return;
   note_rates(width);
-  xi = has_chain() ? now.chain.friction() : 0.0;
   combine(alpha);
 }
 
@@ -286,31 +263,29 @@ void Barostat::begin_passes(double h)
   made = present;
 }
 
-void Barostat::pass(const Friction &alpha, double h, int values)
+void Barostat::pass(const Friction &alpha, double xi, double h)
 {
   if (!moves()) return;
-  const double twice = twice_kinetic();
-  if (has_chain() && std::isfinite(twice) &&
-      !now.chain.advance(target_of_chain(-1.0, h), twice, h, values))
-    error->all(FLERR,
-               "Fix gear/quat: in step {} the box moves so fast that its thermostat cannot follow; "
-               "begin nearer to the target pressure, or use a Pdamp of {:.2g} or longer",
-               update->ntimestep, longer_period());
-  xi = has_chain() ? now.chain.friction() : 0.0;
-  now.cell.pass(drive(), xi, h);
+  cell.pass(drive(), xi, h);
   note_rates(h);
   combine(alpha);
+}
+
+void Barostat::refuse_speed() const
+{
+  error->all(FLERR,
+             "Fix gear/quat: in step {} the box moves so fast that its thermostat cannot follow; "
+             "begin nearer to the target pressure, or use a Pdamp of {:.2g} or longer",
+             update->ntimestep, longer_period());
 }
 
 void Barostat::end_passes()
 {
   if (!moves()) return;
-  if (has_chain()) now.chain.conclude();
-  correction = now.cell.correction() * inverse;
-  local_error = now.cell.local_error() * inverse;
-  now.cell.finish();
+  correction = cell.correction() * box.inverse_matrix();
+  local_error = cell.local_error() * box.inverse_matrix();
+  cell.finish();
   note_rates(width);
-  box.set(matrix);
 }
 
 void Barostat::place(const double *force, const double *predicted, BodyState &state,
@@ -318,7 +293,7 @@ void Barostat::place(const double *force, const double *predicted, BodyState &st
 {
   double scaled_way[3], way[3];
   for (int k = 0; k < 3; ++k) scaled_way[k] = state.center[k] - predicted[k];
-  matrix.times(scaled_way, way);
+  box.matrix().times(scaled_way, way);
   last.work += dot3(force, way) - dot3(force, scaled_way);
   box.to_space(state);
 }
@@ -335,15 +310,9 @@ void Barostat::flip()
   if (is_tilted()) box.flip();
 }
 
-void Barostat::put_back()
-{
-  now = kept;
-  if (moves()) box.set(now.cell.matrix());
-}
-
 void Barostat::rescale(double ratio)
 {
-  now.cell.rescale(ratio);
+  cell.rescale(ratio);
   width *= ratio;
 }
 
@@ -365,10 +334,8 @@ StepErrors Barostat::errors(double h) const
 
 double Barostat::energy(double heat) const
 {
-  double sum = mean_target(present.target) * volume() + heat + 0.5 * twice_kinetic() -
+  return mean_of(target()) * volume() + heat + 0.5 * twice_kinetic() -
       virial->value().contracted(correction);
-  if (has_chain()) sum += now.chain.energy(target_of_chain(0.0, 0.0));
-  return sum;
 }
 
 double Barostat::element(int n) const
@@ -380,10 +347,9 @@ double Barostat::element(int n) const
     const Upper found = (temperature.tensor + virial->value()).scaled(to_pressure / volume());
     return n == PRESSURE ? found.trace() / domain->dimension : found[PLACES[n - P_COMPONENT]];
   }
-  if (n == P_TARGET) return to_pressure * mean_target(present.target);
+  if (n == P_TARGET) return to_pressure * mean_of(target());
   if (n < E_BOX) return rate[n - STRAIN_RATE];
-  if (n == E_BOX) return 0.5 * twice_kinetic() * force->mvv2e;
-  return has_chain() ? now.chain.friction() : 0.0;
+  return 0.5 * twice_kinetic() * force->mvv2e;
 }
 
 /* ----------------------------------------------------------------------
@@ -451,9 +417,8 @@ void Barostat::tell_freedoms()
       fmt::format(
           "barostat for {:.0f} degrees of freedom of translation{} and {} of the box, whose "
           "mass is {} at a temperature of {:.4g}",
-          temperature.freedoms[Temperature::TRANSLATION], temperature.description(),
-          free_components(), utils::join_words(words, " and "),
-          kt() * force->mvv2e / force->boltz));
+          temperature.freedoms[Temperature::TRANSLATION], temperature.description(), freedoms(),
+          utils::join_words(words, " and "), kt() * force->mvv2e / force->boltz));
 }
 
 void Barostat::begin_run(bool anew, double h)
@@ -471,7 +436,7 @@ void Barostat::begin_run(bool anew, double h)
     here = std::max(here, bodies.body_at(ibody).extent);
   longest_body = over_ranks(MPI_MAX, here, world);
   for (int k = 0; k < 3; ++k) refuse_narrow_box(k, domain->prd[k]);
-  begun_matrix = matrix;
+  begun_matrix = box.matrix();
   frequency.begin_run();
   strongest = Upper();
   warned_mesh = false;
@@ -500,33 +465,29 @@ const char *Barostat::reason_to_start_anew() const
 void Barostat::refer_to_box(double h)
 {
   if (!moves()) return;
-  const Upper before = width != 0.0 ? now.cell.rate(width) : Upper();
+  const Upper before = width != 0.0 ? cell.rate(width) : Upper();
   width = h;
-  target_at_start = present.target;
   box.refer();
-  now.cell.begin(before, h);
-  matrix = begun_matrix = Upper::one();
+  cell.begin(before, h);
+  begun_matrix = Upper::one();
   rate = before;
 }
 
 /// M'' at the start.
-Upper Barostat::begin_acceleration()
+Upper Barostat::begin_acceleration(double xi)
 {
   const Upper push = drive();
   note_drive(push);
-  xi = has_chain() ? now.chain.friction() : 0.0;
-  return CellHistory::acceleration(matrix, rate, push, xi);
+  return CellHistory::acceleration(box.matrix(), rate, push, xi);
 }
 
-void Barostat::begin_start(const StartNodes &nodes)
+void Barostat::begin_start(const StartNodes &nodes, double xi)
 {
   if (!moves()) return;
   const double s = nodes.spacing;
-  held = has_chain() &&
-      now.chain.is_stiff(target_of_chain(0.0, nodes.h), twice_kinetic(), nodes.h,
-                         nodes.collocation.pairs());
-  const Upper second = begin_acceleration();
-  nodes.collocation.begin<Upper::SIZE>(matrix.m.data(), (rate * matrix).scaled(s).m.data(),
+  const Upper second = begin_acceleration(xi);
+  nodes.collocation.begin<Upper::SIZE>(box.matrix().m.data(),
+                                       (rate * box.matrix()).scaled(s).m.data(),
                                        second.scaled(s * s).m.data(), cell_at_nodes);
 }
 
@@ -540,21 +501,13 @@ void Barostat::enter_node(const StartNodes &nodes, int node)
   if (!moves()) return;
   Upper value, first;
   nodes.collocation.values_at(node, cell_at_nodes, value.m.data(), first.m.data());
-  matrix = value;
-  rate = first.scaled(1.0 / nodes.spacing) * value.inverse();
-  move_target(node * nodes.spacing);
-  show(matrix);
+  time_of_node = node * nodes.spacing;
+  show(value, first.scaled(1.0 / nodes.spacing) * value.inverse());
 }
 
-void Barostat::visit_node(const StartNodes &nodes, int node, const Collocation::Scalar &twice,
-                          const Friction &alpha)
+void Barostat::visit_node(const StartNodes &nodes, int node, const Friction &alpha, double xi)
 {
-  if (has_chain() && !held)
-    xi = now.chain
-             .flow(target_of_chain(0.0, nodes.h), drive_of(nodes.collocation, twice), nodes.spacing,
-                   node)
-             .y[0];
-  const Upper second = CellHistory::acceleration(matrix, rate, drive(), xi);
+  const Upper second = CellHistory::acceleration(box.matrix(), rate, drive(), xi);
   nodes.collocation.set_rates(node, second.scaled(nodes.spacing * nodes.spacing).m.data(),
                               cell_at_nodes);
   combine(alpha);
@@ -568,30 +521,25 @@ void Barostat::settle(const StartNodes &nodes, int pair)
 void Barostat::leave_nodes()
 {
   if (!moves()) return;
-  move_target(0.0);
+  time_of_node = 0.0;
   note_rates(width);
-  box.set(matrix);
   box.show(true);
 }
 
-void Barostat::seed(const StartNodes &nodes, int pairs, int values,
-                    const Collocation::Scalar &twice)
+void Barostat::seed(const StartNodes &nodes, int pairs)
 {
   double series[Upper::SIZE * TaylorSeries::MAX_TERMS];
   nodes.collocation.expand(cell_at_nodes, pairs, series);
-  now.cell.seed(series, Collocation::terms_of(pairs), nodes.spacing, nodes.h);
-  now.chain.seed(nodes.collocation.rate_at_start(twice), pairs, nodes.spacing, values + 1);
+  cell.seed(series, Collocation::terms_of(pairs), nodes.spacing, nodes.h);
 }
 
-void Barostat::seed_local(double h, int terms)
+void Barostat::seed_local(double h, int terms, double xi)
 {
   if (!moves()) return;
-  const Upper second = begin_acceleration();
+  const Upper second = begin_acceleration(xi), &matrix = box.matrix();
   const Upper series[3] = {matrix, (rate * matrix).scaled(h), second.scaled(0.5 * h * h)};
-  now.cell.seed(series[0].m.data(), terms, h, h);
+  cell.seed(series[0].m.data(), terms, h, h);
   times.begin(SECOND_PAPER - 2, std::fabs(h));
-  const double twice = twice_kinetic();
-  now.chain.seed(&twice, 0, 0.0, 1);
 }
 
 /* ----------------------------------------------------------------------
@@ -610,9 +558,10 @@ double Barostat::probing_strain() const
 void Barostat::enter_probe(int side)
 {
   if (!moves()) return;
+  Upper strained = box.matrix();
   for (int k = 0; k < 3; ++k)
-    if (asked.on[k]) matrix[k] = 1.0 + side * probing_strain();
-  show(matrix);
+    if (asked.on[k]) strained[k] = 1.0 + side * probing_strain();
+  show(strained, rate);
 }
 
 void Barostat::leave_probe(int side)
@@ -715,7 +664,7 @@ void Barostat::refuse_narrow_box(int direction, double edge) const
 }
 
 /// The box is predicted, but LAMMPS still has the old box.
-void Barostat::refuse_box() const
+void Barostat::refuse_box(const Upper &matrix) const
 {
   const Upper &before = box.matrix();
   for (int k = 0; k < 3; ++k) {
@@ -730,7 +679,7 @@ void Barostat::refuse_box() const
     refuse_narrow_box(k, domain->prd[k] * ratio);
   }
   double deviates = 0.0;
-  const double mean = mean_target(present.target);
+  const double mean = mean_of(target());
   for (int k = 0; k < Upper::SIZE; ++k)
     if (asked.on[k])
       deviates = std::max(deviates, std::fabs(present.target[k] - (k < 3 ? mean : 0.0)));
@@ -761,10 +710,10 @@ void Barostat::refuse_box() const
 
 void Barostat::fields(Fields &v)
 {
-  v(width, made, correction, *virial, box, now, frequency);
+  v(width, made, correction, *virial, box, cell, frequency);
   if (changing_step) v(times);
   if (!v.reads()) return;
   present = made;
   note_rates(width);
-  box.resume(matrix);
+  box.resume(cell.matrix());
 }

@@ -47,9 +47,6 @@ struct StartNodes {
   double h;          ///< the step of the histories
 };
 
-/// 2K around the start, in units of the node spacing.
-ChainDrive drive_of(const Collocation &collocation, const Collocation::Scalar &twice);
-
 class Barostat : protected Pointers {
  public:
   /// Elements of the fix's vector after those of chains.
@@ -95,7 +92,8 @@ class Barostat : protected Pointers {
   /// From the present sums; alpha: of the bodies.
   void measure(const Friction &alpha);
   void begin_passes(double h);
-  void pass(const Friction &alpha, double h, int values);
+  /// xi: the friction of the box.
+  void pass(const Friction &alpha, double xi, double h);
   void end_passes();
   /// A corrected state with a scaled center becomes unscaled.  predicted: its scaled center.
   void place(const double *force, const double *predicted, BodyState &state,
@@ -104,8 +102,6 @@ class Barostat : protected Pointers {
   void end_step();
   /// The step of length h is accepted.
   void note_step(double h);
-  void keep() { kept = now; }
-  void put_back();
   void rescale(double ratio);
   /// True if the box is tilted so much that another cell of the same lattice should replace it.
   bool is_tilted() const { return asked.shears() && asked.flip && box.is_tilted(); }
@@ -123,13 +119,13 @@ class Barostat : protected Pointers {
   Load scaled(const Load &load) const
   {
     Load found = load;
-    inverse.times(load.force, found.force);
+    box.inverse_matrix().times(load.force, found.force);
     return found;
   }
   void to_space(double *velocity) const
   {
     const double scaled[3] = {velocity[0], velocity[1], velocity[2]};
-    matrix.times(scaled, velocity);
+    box.matrix().times(scaled, velocity);
   }
   /// Of all bodies, in the present pass.
   const CellFriction &friction() const { return of_bodies; }
@@ -146,18 +142,16 @@ class Barostat : protected Pointers {
 
   /// The present box becomes the reference, and keeps its rate.
   void refer_to_box(double h);
-  void begin_start(const StartNodes &nodes);
+  void begin_start(const StartNodes &nodes, double xi);
   void foretell(const StartNodes &nodes);
   /// Sets the box of a node, and unscales the states, whose centers are scaled.
   void enter_node(const StartNodes &nodes, int node);
-  /// twice: of the box, at the nodes so far.
-  void visit_node(const StartNodes &nodes, int node, const Collocation::Scalar &twice,
-                  const Friction &alpha);
+  void visit_node(const StartNodes &nodes, int node, const Friction &alpha, double xi);
   void settle(const StartNodes &nodes, int pair);
   /// Restores the box of the start.
   void leave_nodes();
-  void seed(const StartNodes &nodes, int pairs, int values, const Collocation::Scalar &twice);
-  void seed_local(double h, int terms);
+  void seed(const StartNodes &nodes, int pairs);
+  void seed_local(double h, int terms, double xi);
   /// After the start, forces are evaluated in a box that is a little smaller (side -1), and a little
   /// larger (1), with the scaled centers of the start.
   void enter_probe(int side);
@@ -165,12 +159,18 @@ class Barostat : protected Pointers {
   /// LAMMPS' vflag for the evaluation of forces at nodes.
   int vflag() const { return virial ? virial->flag() : 0; }
 
+  /// Ends the run: the chain of the box cannot follow it.
+  [[noreturn]] void refuse_speed() const;
   double twice_kinetic() const;
+  /// Coupled directions have one degree of freedom.
+  int freedoms() const;
+  /// The shortest damping time.
+  double period() const;
   /// S' of Eq. P7.
   double rate_of_heat() const;
-  /// The terms of Eq. P7 with the box.  heat: S.
+  /// The terms of Eq. P7 with the box, without its chain.  heat: S.
   double energy(double heat) const;
-  /// After Temperature::sum_present().
+  /// After Temperature::sum_present(); without XI_BOX.
   double element(int n) const;
 
   void fields(Fields &v);
@@ -183,12 +183,7 @@ class Barostat : protected Pointers {
   Temperature &temperature;
   std::optional<MolecularVirial> virial;    ///< of a box that moves
   Box box;
-  struct Moving {    ///< variables that a step changes
-    CellHistory cell;
-    Chain chain;    ///< of the box
-    template <class V> void fields(V &v) { v(cell, chain); }
-  };
-  Moving now, kept;
+  CellHistory cell;
   RememberedLoads times{false};    ///< with a changing step: of the last drives of the box
   bool changing_step = false;      ///< keyword tolerance
   double width = 0.0;              ///< the step of the histories
@@ -201,11 +196,9 @@ class Barostat : protected Pointers {
   Setting present, made;        ///< of this step, or at a node, and of the last step
   double time_of_node = 0.0;    ///< since the present step
 
-  Upper matrix = Upper::one(), inverse = Upper::one();    ///< M in the present pass, or at a node
-  Upper rate;                                             ///< G
+  Upper rate;           ///< G in the present pass, or at a node
   Upper correction;     ///< of M M^-1 by the corrector, in the last step
   Upper local_error;    ///< of M M^-1, of the last step
-  double xi = 0.0;      ///< of the chain
   CellFriction of_bodies;
 
   BoxFrequency frequency;
@@ -219,29 +212,23 @@ class Barostat : protected Pointers {
   // the start
 
   Collocation::Nodes<Upper::SIZE, 2> cell_at_nodes = {};
-  bool held = false;
-  Upper target_at_start;
 
-  bool has_chain() const { return asked.length > 0; }
   double weight_of(int direction) const;
   double kt() const;
   Upper masses() const;
-  int free_components() const;
-  ChainTarget target_of_chain(double steps_ahead, double h) const;
-  double period() const;
-  double volume() const { return box.volume(matrix); }
-  double mean_target(const Upper &pressures) const;
+  double volume() const { return box.volume(box.matrix()); }
+  double mean_of(const Upper &pressures) const;
   void find_target(bigint step, double h);
-  void move_target(double time);
+  Upper target() const { return present.target + present.target_rate.scaled(time_of_node); }
   Upper drive() const;
   void note_drive(const Upper &drive);
-  Upper begin_acceleration();
+  Upper begin_acceleration(double xi);
   void note_rates(double h);
   void combine(const Friction &alpha);
-  void show(const Upper &deformation);
+  void show(const Upper &deformation, const Upper &its_rate);
 
   void refuse_others() const;
-  void refuse_box() const;
+  void refuse_box(const Upper &matrix) const;
   void refuse_narrow_box(int direction, double edge) const;
   void tell_freedoms();
   double period_for_drive(double omega) const;

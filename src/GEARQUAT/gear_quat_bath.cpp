@@ -60,9 +60,11 @@ static Scheme scheme_of_bath(Scheme scheme)
 Bath::Bath(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, const Sites &sites) :
     Pointers(lmp), temperature(lmp, fix, bodies, args.thermostat, args.pressure),
     box(lmp, fix, bodies, sites, args.pressure, temperature), bodies(bodies),
-    words(args.thermostat), chains(words.damp > 0.0 ? 1 + words.separate : 0, Chain(words.length)),
+    words(args.thermostat), thermostats(words.damp > 0.0 ? 1 + words.separate : 0),
+    chains(thermostats, Chain(words.length)),
     isokinetic(lmp, bodies, args.isokinetic, args.rescale), pending(bodies)
 {
+  if (box.moves() && args.pressure.length > 0) chains.emplace_back(args.pressure.length);
   set_scheme(scheme_of_bath(args.scheme));
 }
 
@@ -78,23 +80,31 @@ void Bath::set_scheme(const Scheme &scheme)
 }
 
 /* ----------------------------------------------------------------------
-   chains
+   chains: the last one is that of the box, if it has one
 ------------------------------------------------------------------------- */
 
-double Bath::of_chain(int chain, const double (&parts)[2]) const
+double Bath::of_both(int chain, const double (&parts)[2]) const
 {
   return words.separate ? parts[chain] : parts[TRANSLATION] + parts[ROTATION];
 }
 
+double Bath::twice_of(int chain) const
+{
+  return chain < thermostats ? of_both(chain, temperature.twice) : box.twice_kinetic();
+}
+
 ChainTarget Bath::target_of(int chain, double steps_ahead, double h) const
 {
-  return temperature.target(of_chain(chain, temperature.freedoms), words.damp, steps_ahead, h);
+  const bool of_box = chain >= thermostats;
+  return temperature.target(of_box ? box.freedoms() : of_both(chain, temperature.freedoms),
+                            of_box ? box.period() : words.damp, steps_ahead, h);
 }
 
 double Bath::strongest_friction() const
 {
   double strongest = 0.0;
-  for (const auto &chain : chains) strongest = std::max(strongest, std::fabs(chain.friction()));
+  for (int c = 0; c < thermostats; ++c)
+    strongest = std::max(strongest, std::fabs(chains[c].friction()));
   return strongest;
 }
 
@@ -104,6 +114,7 @@ void Bath::advance(int chain, double twice_kinetic, double h, int values)
   if (!std::isfinite(twice_kinetic)) return;
   const ChainTarget target = target_of(chain, -1.0, h);
   if (chains[chain].advance(target, twice_kinetic, h, values)) return;
+  if (chain >= thermostats) box.refuse_speed();
   const double degree = force->mvv2e / force->boltz;
   error->all(FLERR,
              "Fix gear/quat temp: in step {} the bodies have a temperature of {:.4g}, {:.3g} times "
@@ -124,7 +135,7 @@ void Bath::begin_run(bool anew, double h)
   box.refuse_scene();
   temperature.begin_run(anew, made.line);
   note_friction();
-  if (!chains.empty()) {
+  if (thermostats > 0) {
     refuse_bodies();
     tell_freedoms();
     // a single pass uses only the predicted friction; tolerance limits a step to exactly this many
@@ -199,7 +210,7 @@ const char *Bath::reason_to_start_anew() const
 
 void Bath::note_friction()
 {
-  for (size_t c = 0; c < chains.size(); ++c) xi[c] = chains[c].friction();
+  for (int c = 0; c < (int) chains.size(); ++c) xi_of(c) = chains[c].friction();
   share_friction();
 }
 
@@ -337,10 +348,12 @@ void Bath::find_friction(const Integrator &integrator)
   const int values = integrator.values();
   const double h = integrator.step();
   isokinetic.acts() ? isokinetic.sum() : temperature.sum();
-  for (size_t c = 0; c < chains.size(); ++c)
-    advance(c, same_bodies ? twice_of(c) : chains[c].foretold(h, values), h, values);
+  for (int c = 0; c < (int) chains.size(); ++c) {
+    const bool is_known = same_bodies || c >= thermostats;
+    advance(c, is_known ? twice_of(c) : chains[c].foretold(h, values), h, values);
+  }
   note_friction();
-  box.pass(of_all, h, values);
+  box.pass(of_all, xi[OF_BOX], h);
 }
 
 void Bath::end_passes(double h)
@@ -356,7 +369,7 @@ void Bath::end_passes(double h)
 void Bath::note_step(double h)
 {
   box.note_step(h);
-  if (chains.empty()) return;
+  if (thermostats == 0) return;
   for (const auto part : {TRANSLATION, ROTATION}) {
     const bool is_cold =
         temperature.twice[part] < COLD * temperature.freedoms[part] * temperature.line.kt;
@@ -380,12 +393,12 @@ void Bath::follow_changes(double h)
 {
   if (isokinetic.acts() || !acts() || temperature.is_counted()) return;
   std::vector<ChainTarget> before;
-  for (size_t c = 0; c < chains.size(); ++c) before.push_back(target_of(c, 0.0, h));
+  for (int c = 0; c < thermostats; ++c) before.push_back(target_of(c, 0.0, h));
   const double of_box = box.twice_kinetic();
   temperature.count();
   temperature.sum_present();
   note_setting();
-  for (size_t c = 0; c < chains.size(); ++c)
+  for (int c = 0; c < thermostats; ++c)
     chains[c].join(before[c], target_of(c, 0.0, h), twice_of(c));
   heat.add(0.5 * (of_box - box.twice_kinetic()));
 }
@@ -394,7 +407,7 @@ void Bath::follow_velocities(double h)
 {
   if (isokinetic.acts() || !acts()) return;
   measure();
-  for (size_t c = 0; c < chains.size(); ++c) {
+  for (int c = 0; c < thermostats; ++c) {
     const ChainTarget target = target_of(c, 0.0, h);
     chains[c].join(target, target, twice_of(c));
   }
@@ -402,16 +415,14 @@ void Bath::follow_velocities(double h)
 
 void Bath::keep()
 {
-  kept = chains;
-  kept_heat = heat;
-  box.keep();
+  kept = Fields();
+  fields(kept);
 }
 
 void Bath::put_back()
 {
-  chains = kept;
-  heat = kept_heat;
-  box.put_back();
+  Fields before(kept.numbers());
+  fields(before);
 }
 
 void Bath::rescale(double ratio)
@@ -427,7 +438,7 @@ void Bath::rescale(double ratio)
 double Bath::longest_step() const
 {
   double longest = box.longest_step();
-  if (chains.empty()) return longest;
+  if (thermostats == 0) return longest;
   const double strongest = strongest_friction();
   if (strongest > 0.0) longest = std::min(longest, SAFE * STRONGEST / strongest);
   return std::min(longest, words.damp / FEWEST_STEPS);
@@ -441,12 +452,12 @@ void Bath::errors(double h, int values, const Include &include) const
   const int terms = std::min(values, SECOND_MOST);
   const double kt = temperature.line.kt;
   double most = 0.0;
-  for (size_t c = 0; c < chains.size(); ++c)
+  for (int c = 0; c < thermostats; ++c)
     most = std::max(most, chains[c].left_out(target_of(c, 0.0, h), h, terms));
   most *= (double) adams_moulton(terms);
   StepErrors found;
   found.energy = std::fabs(h) * 3.0 * kt * most;
-  for (int ibody = 0; ibody < bodies.nmoved() && !chains.empty(); ++ibody) {
+  for (int ibody = 0; ibody < bodies.nmoved() && thermostats > 0; ++ibody) {
     found.length = h * h * std::sqrt(3.0 * kt / bodies.rigid_of(ibody).mass) * most;
     include(found);
   }
@@ -458,7 +469,7 @@ std::vector<Rate> Bath::rates(double h) const
   std::vector<Rate> table;
   const double found = std::fabs(h) * strongest_friction();
   const double period = std::max(FEWEST_STEPS * std::fabs(h), 2.0 * words.damp * found / STRONGEST);
-  if (!chains.empty())
+  if (thermostats > 0)
     table.push_back({"the friction of the thermostat is", found, STRONGEST,
                      fmt::format("use a damping time of {:g} or longer", rounded_up(period))});
   box.add_rate(h, table);
@@ -469,12 +480,21 @@ std::vector<Rate> Bath::rates(double h) const
    the start
 ------------------------------------------------------------------------- */
 
+/// 2K around the start, in units of the node spacing.
+static ChainDrive drive_of(const StartNodes &nodes, const Collocation::Scalar &twice)
+{
+  double at[ChainDrive::MOST];
+  const int points = 2 * twice.pairs + 1;
+  for (int i = 0; i < points; ++i) at[i] = i - twice.pairs;
+  return ChainDrive::through(points, at, nodes.collocation.rate_at_start(twice) - twice.pairs);
+}
+
 std::vector<double> Bath::rates_of_unknowns() const
 {
   std::vector<double> found;
   for (size_t c = 0; c < chains.size(); ++c) found.push_back(twice_of(c));
   if (isokinetic.acts()) found.push_back(isokinetic.power());
-  if (box.moves()) found.insert(found.end(), {box.rate_of_heat(), box.twice_kinetic()});
+  if (box.moves()) found.push_back(box.rate_of_heat());
   return found;
 }
 
@@ -484,7 +504,7 @@ void Bath::begin_start(const StartNodes &nodes)
   for (size_t c = 0; c < chains.size(); ++c)
     held.push_back(chains[c].is_stiff(target_of(c, 0.0, nodes.h), twice_of(c), nodes.h,
                                       nodes.collocation.pairs()));
-  box.begin_start(nodes);
+  box.begin_start(nodes, xi[OF_BOX]);
   at_nodes.clear();
   for (const double rate : rates_of_unknowns())
     nodes.collocation.begin(0.0, rate, at_nodes.emplace_back());
@@ -502,14 +522,14 @@ void Bath::visit_node(const StartNodes &nodes, int node)
     isokinetic.sum_present();
   else if (acts())
     temperature.sum_present();
-  for (size_t c = 0; c < chains.size(); ++c)
+  for (int c = 0; c < (int) chains.size(); ++c)
     if (!held[c])
-      xi[c] = chains[c]
-                  .flow(target_of(c, 0.0, nodes.h), drive_of(nodes.collocation, at_nodes[c]),
-                        nodes.spacing, node)
-                  .y[0];
+      xi_of(c) =
+          chains[c]
+              .flow(target_of(c, 0.0, nodes.h), drive_of(nodes, at_nodes[c]), nodes.spacing, node)
+              .y[0];
   share_friction();
-  if (box.moves()) box.visit_node(nodes, node, at_nodes.back(), of_all);
+  if (box.moves()) box.visit_node(nodes, node, of_all, xi[OF_BOX]);
   const auto now = rates_of_unknowns();
   for (size_t k = 0; k < now.size(); ++k) nodes.collocation.set_rate(node, now[k], at_nodes[k]);
 }
@@ -530,7 +550,7 @@ void Bath::seed(const StartNodes &nodes, int pairs, int values)
         nodes.collocation.series(at_nodes[chains.size()], pairs, nodes.spacing, series);
     heat.seed(series, terms, nodes.spacing, nodes.h, values_of_heat);
   }
-  if (box.moves()) box.seed(nodes, pairs, values, at_nodes.back());
+  if (box.moves()) box.seed(nodes, pairs);
 }
 
 void Bath::seed_local(double h, int terms)
@@ -539,7 +559,7 @@ void Bath::seed_local(double h, int terms)
     const double now = twice_of(c);
     chains[c].seed(&now, 0, 0.0, 1);
   }
-  box.seed_local(h, terms);
+  box.seed_local(h, terms, xi[OF_BOX]);
   const double series[2] = {0.0, h * (isokinetic.acts() ? isokinetic.power() : box.rate_of_heat())};
   heat.seed(series, 2, h, h, values_of_heat);
 }
@@ -561,10 +581,10 @@ bool Bath::extensive(int n) const
 
 double Bath::energy() const
 {
-  double sum = 0.0;
-  for (size_t c = 0; c < chains.size(); ++c) sum += chains[c].energy(target_of(c, 0.0, 0.0));
-  sum *= force->mvv2e;
-  return box.moves() ? sum + box.energy(heat.value()) * force->mvv2e : sum;
+  double sum = 0.0, of_box = box.moves() ? box.energy(heat.value()) : 0.0;
+  for (int c = 0; c < (int) chains.size(); ++c)
+    (c < thermostats ? sum : of_box) += chains[c].energy(target_of(c, 0.0, 0.0));
+  return sum * force->mvv2e + of_box * force->mvv2e;
 }
 
 double Bath::element(int n)
@@ -594,6 +614,8 @@ double Bath::element(int n)
       return xi[TRANSLATION];
     case XI_ROTATION:
       return xi[words.separate ? ROTATION : TRANSLATION];
+    case ELEMENTS + Barostat::XI_BOX:
+      return xi[OF_BOX];
     default:
       if (n - ELEMENTS < Barostat::P_TARGET) temperature.sum_present();
       return box.element(n - ELEMENTS);

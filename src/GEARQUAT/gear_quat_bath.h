@@ -46,7 +46,7 @@ class Bath : protected Pointers {
 
   Bath(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, const Sites &sites);
 
-  bool acts() const { return !chains.empty() || isokinetic.acts() || box.moves(); }
+  bool acts() const { return thermostats > 0 || isokinetic.acts() || box.moves(); }
   /// False if its variables would be lost in a start.
   bool may_start_anew() const { return !isokinetic.acts(); }
 
@@ -123,9 +123,10 @@ class Bath : protected Pointers {
 
   Bodies &bodies;
   ThermostatWords words;
-  std::vector<Chain> chains, kept;    ///< of both parts, or one for both
+  const int thermostats;        ///< number of chains: of both parts, or one for both
+  std::vector<Chain> chains;    ///< the last one is that of the box, if it has one
   IsokineticConstraint isokinetic;
-  ScalarHistory heat, kept_heat;    ///< removed by isokinetic, or S of the box
+  ScalarHistory heat;    ///< removed by isokinetic, or S of the box
   int values_of_heat = 0;
   CorrectorCoefficients::Array coefficients_of_heat;    ///< of a first-order equation
 
@@ -134,27 +135,29 @@ class Bath : protected Pointers {
     double freedoms[2], damp;
     template <class V> void fields(V &v) { v(line, freedoms, damp); }
   };
-  Setting made = {};                      ///< of the last step
-  bool single_pass = false;               ///< of the corrector
-  bool strong = false;                    ///< the friction of this step is taken implicitly
-  bool same_bodies = true;                ///< no insertion or removal in this step
-  double xi[2] = {};                      ///< xi_1 of the chains
+  Setting made = {};           ///< of the last step
+  bool single_pass = false;    ///< of the corrector
+  bool strong = false;         ///< the friction of this step is taken implicitly
+  bool same_bodies = true;     ///< no insertion or removal in this step
+  enum { OF_BOX = 2 };
+  double xi[3] = {};                      ///< xi_1 of the chains
   Friction of_all;                        ///< of a body without masks, in the current pass
   double cold[2] = {};                    ///< time that the parts have been cold
   bool warned[2] = {};                    ///< of that
   std::string told;                       ///< last message of the degrees of freedom
   Column<Integrator::Pending> pending;    ///< in correct()
 
-  // the start: 2K of the chains, power, 2K of the box and its heat, as far as they act, which drive
-  // the chains from the start to each node
+  Fields kept;    ///< before a step that may be undone
+
+  // the start: 2K, which drives a chain from the start to each node, and the rate of the heat
 
   std::vector<Collocation::Scalar> at_nodes;
   std::vector<bool> held;    ///< chains that are constant during the start
   std::vector<double> rates_of_unknowns() const;
 
-  /// From the quantities of both parts.
-  double of_chain(int chain, const double (&parts)[2]) const;
-  double twice_of(int chain) const { return of_chain(chain, temperature.twice); }
+  double &xi_of(int chain) { return xi[chain < thermostats ? chain : OF_BOX]; }
+  double of_both(int chain, const double (&parts)[2]) const;
+  double twice_of(int chain) const;
   ChainTarget target_of(int chain, double steps_ahead, double h) const;
   double strongest_friction() const;
   void note_setting();

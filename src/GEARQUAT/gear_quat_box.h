@@ -29,6 +29,7 @@ class Box : protected Pointers {
   /// Sets M for the mapping of states.
   void set(const Upper &deformation);
   const Upper &matrix() const { return m; }
+  const Upper &inverse_matrix() const { return inverse; }
   double volume(const Upper &deformation) const
   {
     return reference_volume * deformation.determinant();

@@ -180,20 +180,20 @@ NOT_IN_A_FILE = {
         STEP: "twice tensor common energies momenta sums",
     },
     "bath Bath": {
-        COMMAND: "words values_of_heat single_pass",
+        COMMAND: "words thermostats values_of_heat single_pass",
         OTHERS: "bodies",
         DERIVED: "made xi of_all",
         RUN: "at_nodes held",
-        STEP: "kept kept_heat coefficients_of_heat strong same_bodies pending",
+        STEP: "kept coefficients_of_heat strong same_bodies pending",
         MESSAGES: "told warned",
     },
     "barostat Barostat": {
         COMMAND: "asked is_asked changing_step",
         OTHERS: "fix bodies temperature",
-        DERIVED: "matrix rate of_bodies inverse",
+        DERIVED: "rate of_bodies",
         RUN: "longest_body strongest begun_box begun_matrix drive_of_smaller "
-        "cell_at_nodes held target_at_start time_of_node",
-        STEP: "kept local_error xi",
+        "cell_at_nodes time_of_node present",
+        STEP: "local_error",
         MESSAGES: "told warned_mesh",
     },
     "sites Sites": {
