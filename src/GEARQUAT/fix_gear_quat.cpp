@@ -166,8 +166,6 @@ void FixGearQuat::setup_pre_exchange()
 {
   for (int i = 0; atom->vest && i < atom->nlocal; ++i)    // no fix extrapolates the first ones
     if (ownership.in_body(i)) std::copy_n(atom->v[i], 3, atom->vest[i]);
-  if (!step.bath.box.knows_box())
-    step.forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
   driven_box.begin_setup();
 }
 

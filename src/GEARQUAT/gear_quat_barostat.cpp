@@ -32,6 +32,11 @@ using namespace GearQuat;
 
 static constexpr double IN_A_STEP = 0.03;
 
+// the part of the fastest stable oscillation that is followed for long; sums of the frequency fade
+// over this many damping times
+
+static constexpr double FOLLOWED = 0.6, MEMORY = 2.0;
+
 // the mesh of long-range forces is made for edges that differ by less than this
 
 static constexpr double OF_MESH = 0.15;
@@ -52,9 +57,7 @@ Barostat::Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sit
     fix(fix), bodies(bodies), asked(pressure), is_asked(asked.any()), temperature(temperature),
     box(lmp, pressure.fixed)
 {
-  if (!moves()) return;
-  virial.emplace(lmp, fix, sites);
-  frequency.set_period(period());
+  if (moves()) virial.emplace(lmp, fix, sites);
 }
 
 void Barostat::set_scheme(const Scheme &scheme)
@@ -62,12 +65,7 @@ void Barostat::set_scheme(const Scheme &scheme)
   if (!moves()) return;
   changing_step = scheme.remembers;
   cell.set_scheme(scheme);
-  frequency.set_fastest(fastest_oscillation(CellHistory::scheme_of(scheme)));
-}
-
-int Barostat::values_of_scalar(const Scheme &scheme)
-{
-  return std::min(CellHistory::scheme_of(scheme).values() - scheme.remembers, FIRST_MOST);
+  fastest = fastest_oscillation(CellHistory::scheme_of(scheme));
 }
 
 /* ----------------------------------------------------------------------
@@ -157,7 +155,7 @@ Upper Barostat::drive() const
 {
   Upper found;
   const Upper mass = masses(), aim = target(), &tensor = temperature.tensor;
-  const double v = volume(), trace = tensor.trace();
+  const double v = box.volume(), trace = tensor.trace();
   for (int k = 0; k < Upper::SIZE; ++k) {
     if (!asked.on[k]) continue;
     double push = tensor[k] + virial->value()[k] - aim[k] * v;
@@ -185,7 +183,7 @@ double Barostat::rate_of_heat() const
   if (!moves()) return 0.0;
   double sum = 0.0;
   const Upper aim = target();
-  const double mean = mean_of(aim), v = volume();
+  const double mean = mean_of(aim), v = box.volume();
   for (int k = 0; k < Upper::SIZE; ++k)
     if (asked.on[k]) sum += v * (aim[k] - (k < 3 ? mean : 0.0)) * rate[k];
   sum -= v * mean_of(present.target_rate);
@@ -276,7 +274,7 @@ void Barostat::refuse_speed() const
   error->all(FLERR,
              "Fix gear/quat: in step {} the box moves so fast that its thermostat cannot follow; "
              "begin nearer to the target pressure, or use a Pdamp of {:.2g} or longer",
-             update->ntimestep, longer_period());
+             update->ntimestep, longer_period(0.0));
 }
 
 void Barostat::end_passes()
@@ -334,7 +332,7 @@ StepErrors Barostat::errors(double h) const
 
 double Barostat::energy(double heat) const
 {
-  return mean_of(target()) * volume() + heat + 0.5 * twice_kinetic() -
+  return mean_of(target()) * box.volume() + heat + 0.5 * twice_kinetic() -
       virial->value().contracted(correction);
 }
 
@@ -343,8 +341,8 @@ double Barostat::element(int n) const
   static constexpr int PLACES[] = {0, 1, 2, 5, 4, 3};    // of xx yy zz xy xz yz
   const double to_pressure = force->nktv2p * force->mvv2e;
   if (n < P_TARGET) {
-    if (!(volume() > 0.0)) return 0.0;    // there was no run yet
-    const Upper found = (temperature.tensor + virial->value()).scaled(to_pressure / volume());
+    if (!(box.volume() > 0.0)) return 0.0;    // there was no run yet
+    const Upper found = (temperature.tensor + virial->value()).scaled(to_pressure / box.volume());
     return n == PRESSURE ? found.trace() / domain->dimension : found[PLACES[n - P_COMPONENT]];
   }
   if (n == P_TARGET) return to_pressure * mean_of(target());
@@ -437,7 +435,7 @@ void Barostat::begin_run(bool anew, double h)
   longest_body = over_ranks(MPI_MAX, here, world);
   for (int k = 0; k < 3; ++k) refuse_narrow_box(k, domain->prd[k]);
   begun_matrix = box.matrix();
-  frequency.begin_run();
+  since = 0.0;
   strongest = Upper();
   warned_mesh = false;
   virial->request(update->ntimestep + 1);
@@ -575,7 +573,9 @@ void Barostat::leave_probe(int side)
   double stiffest = 0.0;
   for (int k = 0; k < 3; ++k)
     if (asked.on[k]) stiffest = std::max(stiffest, -change[k] / (2.0 * probing_strain()));
-  frequency.begin(std::sqrt(stiffest));
+  probed = std::sqrt(stiffest);
+  against = along = 0.0;
+  last_drive = Upper();
 }
 
 /// now: the drive at the present poses and in their box.
@@ -585,14 +585,19 @@ void Barostat::note_drive(const Upper &drive)
     if (std::isfinite(drive[k])) strongest[k] = std::max(strongest[k], std::fabs(drive[k]));
 }
 
+double Barostat::frequency() const
+{
+  return along > 0.0 && against > 0.0 ? std::sqrt(against / along) : probed;
+}
+
 /// A damping time with which the strongest drive of this run does not change the box too much in a
 /// step.  A drive d causes a strain rate of sqrt(2 d) until the box has changed by its own size, and
 /// of d/omega in an oscillation with this angular frequency, 0 if it is not known.  Both rates are
 /// proportional to 1/Pdamp.
-double Barostat::period_for_drive(double omega) const
+double Barostat::longer_period(double omega) const
 {
   constexpr double MARGIN = 1.3;    // the oscillation is not harmonic
-  double needed = 0.0;
+  double needed = 1.05 * period();
   for (int k = 0; k < Upper::SIZE; ++k) {
     if (!asked.on[k]) continue;
     const double most = std::sqrt(2.0 * strongest[k]);
@@ -602,23 +607,26 @@ double Barostat::period_for_drive(double omega) const
   return rounded_up(needed);
 }
 
-/// Of a box that moves too fast.
-double Barostat::longer_period() const
-{
-  return std::max(period_for_drive(0.0), rounded_up(1.05 * period()));
-}
-
 double Barostat::longest_step() const
 {
-  return moves() ? frequency.longest_step() : HUGE_VAL;
+  return frequency() > 0.0 ? 0.5 * FOLLOWED * fastest / frequency() : HUGE_VAL;
 }
 
 void Barostat::note_step(double h)
 {
   if (!moves()) return;
-  const Upper push = drive();
   times.conclude(h);
-  frequency.note(push, rate, masses(), h);
+  const Upper push = drive(), mass = masses();
+  const double fades = std::exp(-std::fabs(h) / (MEMORY * period()));
+  const bool is_known = last_drive.contracted(last_drive) > 0.0;
+  against *= fades;
+  along *= fades;
+  for (int k = 0; is_known && k < Upper::SIZE; ++k) {
+    against -= mass[k] * (push[k] - last_drive[k]) / h * rate[k];
+    along += mass[k] * rate[k] * rate[k];
+  }
+  last_drive = push;
+  since += std::fabs(h);
   note_drive(push);
   watch_mesh();
 }
@@ -643,12 +651,15 @@ void Barostat::watch_mesh()
   }
 }
 
+/// If the sums represent this run, or if the start has measured the frequency.
 void Barostat::add_rate(double h, std::vector<Rate> &table) const
 {
-  if (!moves() || !frequency.is_settled()) return;
-  const double period = std::max(frequency.needed_period(h), period_for_drive(frequency.value()));
-  table.push_back({"the angle of the oscillation of the box is", frequency.radians(h),
-                   frequency.followed(), fmt::format("use a Pdamp of {:g} or longer", period)});
+  if (!moves() || !(since >= MEMORY * period() || along == 0.0)) return;
+  const double radians = frequency() * std::fabs(h), followed = FOLLOWED * fastest;
+  const double needed =
+      std::max(rounded_up(1.05 * period() * radians / followed), longer_period(frequency()));
+  table.push_back({"the angle of the oscillation of the box is", radians, followed,
+                   fmt::format("use a Pdamp of {:g} or longer", needed)});
 }
 
 /// In such a box a body overlaps with its own images, and atoms are lost.
@@ -675,7 +686,7 @@ void Barostat::refuse_box(const Upper &matrix) const
           "Fix gear/quat: in step {} the box would change its length along {} from {:.4g} by "
           "the factor {:.3g}; begin nearer to the target pressure, or use a Pdamp of {:.2g} or "
           "longer, unless a fluid tears under a target that is negative or too small",
-          update->ntimestep, "xyz"[k], domain -> prd[k], ratio, longer_period());
+          update->ntimestep, "xyz"[k], domain -> prd[k], ratio, longer_period(0.0));
     refuse_narrow_box(k, domain->prd[k] * ratio);
   }
   double deviates = 0.0;
@@ -710,10 +721,9 @@ void Barostat::refuse_box(const Upper &matrix) const
 
 void Barostat::fields(Fields &v)
 {
-  v(width, made, correction, *virial, box, cell, frequency);
+  v(width, made, correction, *virial, box, cell, last_drive, against, along, probed);
   if (changing_step) v(times);
   if (!v.reads()) return;
   present = made;
   note_rates(width);
-  box.resume(cell.matrix());
 }

@@ -28,7 +28,6 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_box.h"
-#include "gear_quat_box_frequency.h"
 #include "gear_quat_fields.h"
 #include "gear_quat_limits.h"
 #include "gear_quat_remembered_loads.h"
@@ -65,8 +64,6 @@ class Barostat : protected Pointers {
 
   bool moves() const { return is_asked; }
   void set_scheme(const Scheme &scheme);
-  /// The number of values of a scalar that is integrated with the box.
-  static int values_of_scalar(const Scheme &scheme);
 
   // before a run
 
@@ -75,8 +72,6 @@ class Barostat : protected Pointers {
   /// After Temperature::begin_run().  Collective.
   void begin_run(bool anew, double h);
   const char *reason_to_start_anew() const;
-  /// False if another command has changed the box since the last run.
-  bool knows_box() const { return !moves() || box.is_shown(); }
 
   // a step
 
@@ -201,7 +196,15 @@ class Barostat : protected Pointers {
   Upper local_error;    ///< of M M^-1, of the last step
   CellFriction of_bodies;
 
-  BoxFrequency frequency;
+  // the oscillation of the box: its square frequency is the ratio of the means of -W drive'.G and
+  // W G.G, from sums in which old steps fade
+
+  double fastest = 0.0;                 ///< stable oscillation, in radians per step
+  double against = 0.0, along = 0.0;    ///< the sums
+  double probed = 0.0;                  ///< angular frequency that the start has measured
+  double since = 0.0;                   ///< time of this run
+  Upper last_drive;
+
   bool warned_mesh = false;
   std::string told;                 ///< last message of the degrees of freedom
   double longest_body = 0.0;        ///< largest distance of a site from the owner atom of its body
@@ -216,7 +219,6 @@ class Barostat : protected Pointers {
   double weight_of(int direction) const;
   double kt() const;
   Upper masses() const;
-  double volume() const { return box.volume(box.matrix()); }
   double mean_of(const Upper &pressures) const;
   void find_target(bigint step, double h);
   Upper target() const { return present.target + present.target_rate.scaled(time_of_node); }
@@ -231,8 +233,8 @@ class Barostat : protected Pointers {
   void refuse_box(const Upper &matrix) const;
   void refuse_narrow_box(int direction, double edge) const;
   void tell_freedoms();
-  double period_for_drive(double omega) const;
-  double longer_period() const;
+  double frequency() const;
+  double longer_period(double omega) const;
   double probing_strain() const;
   void watch_mesh();
 };

@@ -73,8 +73,9 @@ void Bath::set_scheme(const Scheme &scheme)
   single_pass = scheme.coupled_passes() == 1;
   Scheme of_heat;
   of_heat.formulation = Formulation::FIRST;
-  of_heat.rows = values_of_heat = isokinetic.acts() ? scheme.values()
-                                                    : Barostat::values_of_scalar(scheme);
+  of_heat.rows = values_of_heat = isokinetic.acts()
+      ? scheme.values()
+      : std::min(CellHistory::scheme_of(scheme).values() - scheme.remembers, FIRST_MOST);
   coefficients_of_heat = CorrectorCoefficients(of_heat).c;
   box.set_scheme(scheme);
 }

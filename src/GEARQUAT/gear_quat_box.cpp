@@ -31,28 +31,14 @@ void Box::refer()
   const double *h = domain->h, *corner = domain->boxlo;
   const double half[3] = {0.5 * (h[0] + h[5] + h[4]), 0.5 * (h[1] + h[3]), 0.5 * h[2]};
   for (int k = 0; k < 3; ++k) origin[k] = fixed.empty() ? corner[k] + half[k] : fixed[k];
-  derive();
   set(Upper::one());
-  note_shown();
 }
 
-void Box::note_shown()
+double Box::volume() const
 {
-  std::copy_n(domain->h, 6, shown.begin());
-  std::copy_n(domain->boxlo, 3, shown.begin() + 6);
-}
-
-bool Box::is_shown() const
-{
-  return reference_volume == 0.0 ||
-      (std::equal(domain->h, domain->h + 6, shown.begin()) &&
-       std::equal(domain->boxlo, domain->boxlo + 3, shown.begin() + 6));
-}
-
-void Box::derive()
-{
-  reference_volume = reference[0] * reference[1];
-  if (domain->dimension == 3) reference_volume *= reference[2];
+  double found = reference[0] * reference[1];
+  if (domain->dimension == 3) found *= reference[2];
+  return found * m.determinant();
 }
 
 void Box::set(const Upper &deformation)
@@ -84,7 +70,6 @@ void Box::show(bool forces)
   }
   domain->set_global_box();
   domain->set_local_box();
-  note_shown();
   if (forces && force->kspace) force->kspace->setup();
 }
 
@@ -144,11 +129,4 @@ void Box::flip()
   domain->x2lamda(atom->nlocal);
   migrate_atoms(lmp);
   domain->lamda2x(atom->nlocal);
-}
-
-void Box::resume(const Upper &deformation)
-{
-  derive();
-  set(deformation);
-  note_shown();
 }

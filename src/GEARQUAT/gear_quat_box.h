@@ -30,17 +30,12 @@ class Box : protected Pointers {
   void set(const Upper &deformation);
   const Upper &matrix() const { return m; }
   const Upper &inverse_matrix() const { return inverse; }
-  double volume(const Upper &deformation) const
-  {
-    return reference_volume * deformation.determinant();
-  }
+  double volume() const;
 
   /// Sets LAMMPS' box to the deformation M, with all quantities that LAMMPS derives from it.
   /// forces: true if forces will be evaluated in this box.
   void show(bool forces);
 
-  /// False if another command has changed LAMMPS' box since show().
-  bool is_shown() const;
   /// True if flip() is possible on this number of ranks.
   bool can_flip() const;
   /// True if a tilt exceeds half of the corresponding period.
@@ -74,21 +69,14 @@ class Box : protected Pointers {
 
   /// The reference and the fixed point.
   template <class V> void fields(V &v) { v(reference, origin); }
-  /// They were read from a restart file, as LAMMPS' box was.
-  void resume(const Upper &deformation);
 
  private:
   std::vector<double> fixed;
   /// The reference box: h as in Domain::h, followed by boxlo and boxhi.
   std::array<double, 12> reference = {};
   double origin[3] = {};
-  std::array<double, 9> shown = {};    ///< as Domain::h, followed by boxlo
-  double reference_volume = 0.0;
   Upper m = Upper::one(), inverse = Upper::one();
   Upper change, inverse_change;    ///< M - 1 and M^-1 - 1
-
-  void derive();
-  void note_shown();
 };
 
 }    // namespace LAMMPS_NS::GearQuat

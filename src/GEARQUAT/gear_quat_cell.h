@@ -49,28 +49,13 @@ struct Upper {
   /// this * v
   void times(const double *v, double *product) const
   {
-    product[0] = m[XX] * v[0] + m[XY] * v[1] + m[XZ] * v[2];
-    product[1] = m[YY] * v[1] + m[YZ] * v[2];
-    product[2] = m[ZZ] * v[2];
-  }
-  /// The transposed matrix * v
-  void transposed_times(const double *v, double *product) const
-  {
-    product[2] = m[XZ] * v[0] + m[YZ] * v[1] + m[ZZ] * v[2];
-    product[1] = m[XY] * v[0] + m[YY] * v[1];
-    product[0] = m[XX] * v[0];
+    for (int i = 0; i < 3; ++i) product[i] = row_times(i, v);
   }
   /// Row i of this * v
   double row_times(int i, const double *v) const
   {
-    switch (i) {
-      case 0:
-        return m[XX] * v[0] + m[XY] * v[1] + m[XZ] * v[2];
-      case 1:
-        return m[YY] * v[1] + m[YZ] * v[2];
-      default:
-        return m[ZZ] * v[2];
-    }
+    if (i == 2) return m[ZZ] * v[2];
+    return i == 1 ? m[YY] * v[1] + m[YZ] * v[2] : m[XX] * v[0] + m[XY] * v[1] + m[XZ] * v[2];
   }
 
   Upper operator*(const Upper &o) const
@@ -84,12 +69,7 @@ struct Upper {
     for (int k = 0; k < SIZE; ++k) sum[k] = m[k] + o[k];
     return sum;
   }
-  Upper operator-(const Upper &o) const
-  {
-    Upper difference;
-    for (int k = 0; k < SIZE; ++k) difference[k] = m[k] - o[k];
-    return difference;
-  }
+  Upper operator-(const Upper &o) const { return *this + o.scaled(-1.0); }
   Upper scaled(double factor) const
   {
     Upper product;

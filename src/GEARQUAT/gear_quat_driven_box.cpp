@@ -202,10 +202,16 @@ void DrivenBox::note_images()
     bodies.change_body(ibody).image = sites.image_of({ownership.owner_of(ibody), ibody, {}});
 }
 
+/// A moving box that another command has changed begins again.
 /// LAMMPS would wrap the atoms of bodies with the present motion of the faces, instead of the motion
 /// with which their velocities were placed.
 void DrivenBox::begin_setup()
 {
+  const auto &box = ownership.box();
+  if (args.pressure.any() &&
+      !(std::equal(domain->h, domain->h + 6, box.begin()) &&
+        std::equal(domain->boxlo, domain->boxlo + 3, box.begin() + 6)))
+    step.forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
   if (!driven) return;
   note_images();
   follow();

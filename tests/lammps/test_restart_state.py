@@ -150,8 +150,7 @@ NOT_IN_A_FILE = {
     "chain Chain": {COMMAND: "length", DERIVED: "begun", STEP: "latest width"},
     "scalar ScalarHistory": {},
     "cell CellHistory": {COMMAND: "n", STEP: "c weight total"},
-    "box Box": {COMMAND: "fixed", DERIVED: "shown reference_volume m inverse change inverse_change"},
-    "box_frequency BoxFrequency": {COMMAND: "fastest period", RUN: "since"},
+    "box Box": {COMMAND: "fixed", DERIVED: "m inverse change inverse_change"},
     "virial MolecularVirial": {COMMAND: "id", OTHERS: "sites"},
     "tolerance TimeStep": {},
     "remembered_loads Growth": {},
@@ -188,10 +187,10 @@ NOT_IN_A_FILE = {
         MESSAGES: "told warned",
     },
     "barostat Barostat": {
-        COMMAND: "asked is_asked changing_step",
+        COMMAND: "asked is_asked changing_step fastest",
         OTHERS: "fix bodies temperature",
         DERIVED: "rate of_bodies",
-        RUN: "longest_body strongest begun_box begun_matrix drive_of_smaller "
+        RUN: "since longest_body strongest begun_box begun_matrix drive_of_smaller "
         "cell_at_nodes time_of_node present",
         STEP: "local_error",
         MESSAGES: "told warned_mesh",

@@ -49,7 +49,12 @@ Load scaled_force(const Upper &matrix, const double *along, const double *axis, 
 {
   Load load;
   // F = M^-T of the force on a scaled center; U = C axis . field
-  matrix.inverse().transposed_times(along, load.force);
+  for (int k = 0; k < 3; ++k) {
+    double unit[3] = {}, column[3];
+    unit[k] = 1.0;
+    matrix.inverse().times(unit, column);
+    load.force[k] = dot3(column, along);
+  }
   const double pull[3] = {-field[0], -field[1], -field[2]};
   cross3(axis, pull, load.torque_space);
   return load;
