@@ -232,12 +232,17 @@ Friction Bath::friction_of(int ibody) const
   return found;
 }
 
-void Bath::measure()
+void Bath::sum_present()
 {
   if (isokinetic.acts())
     isokinetic.sum_present();
   else if (acts())
     temperature.sum_present();
+}
+
+void Bath::measure()
+{
+  sum_present();
   note_friction();
   box.measure(of_all);
 }
@@ -519,10 +524,7 @@ void Bath::foretell(const StartNodes &nodes)
 
 void Bath::visit_node(const StartNodes &nodes, int node)
 {
-  if (isokinetic.acts())
-    isokinetic.sum_present();
-  else if (acts())
-    temperature.sum_present();
+  sum_present();
   for (int c = 0; c < (int) chains.size(); ++c)
     if (!held[c])
       xi_of(c) =

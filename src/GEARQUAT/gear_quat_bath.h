@@ -164,6 +164,7 @@ class Bath : protected Pointers {
   void refuse_bodies() const;
   void tell_freedoms();
   Friction friction_of(int ibody) const;
+  void sum_present();
   void note_friction();
   void share_friction();
   void begin_passes(double h);

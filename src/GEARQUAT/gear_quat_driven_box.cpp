@@ -69,18 +69,6 @@ void DrivenBox::init()
    atoms are remapped with the box
 ------------------------------------------------------------------------- */
 
-void DrivenBox::begin_remap()
-{
-  ownership.note_box();
-}
-
-void DrivenBox::end_remap()
-{
-  refuse_jump();
-  remap_centers();
-  place_sites();
-}
-
 /// A barostat with too short a damping time even turns the box inside out.
 void DrivenBox::refuse_jump() const
 {
@@ -105,8 +93,9 @@ void DrivenBox::refuse_jump() const
   }
 }
 
-void DrivenBox::remap_centers()
+void DrivenBox::end_remap()
 {
+  refuse_jump();
   const double *before = ownership.box().data();
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     const double *center = bodies.state_of(ibody).center;
@@ -115,6 +104,7 @@ void DrivenBox::remap_centers()
     for (int k = 0; k < 3; ++k) way[k] = moved[k] - center[k];
     move_center(ibody, way);
   }
+  place_sites();
 }
 
 /// Moves the centers of the state and of the history.

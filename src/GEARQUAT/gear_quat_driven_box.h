@@ -50,7 +50,7 @@ class DrivenBox : protected Pointers {
   bool any() const { return driven; }
 
   /// Before and after another fix remaps atoms with the box.  Collective.
-  void begin_remap();
+  void begin_remap() { ownership.note_box(); }
   void end_remap();
   /// Called before a step, and when the box may have changed without a remap.
   void follow();
@@ -75,7 +75,6 @@ class DrivenBox : protected Pointers {
 
   void pass_faces(int ibody, const double *images);
   void refuse_jump() const;
-  void remap_centers();
   void move_center(int ibody, const double *way);
   void place_sites();
 };
