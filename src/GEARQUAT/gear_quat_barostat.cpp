@@ -308,6 +308,12 @@ void Barostat::flip()
   if (is_tilted()) box.flip();
 }
 
+void Barostat::put_back()
+{
+  cell = kept;
+  if (moves()) box.set(cell.matrix());
+}
+
 void Barostat::rescale(double ratio)
 {
   cell.rescale(ratio);

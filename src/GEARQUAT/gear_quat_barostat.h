@@ -97,6 +97,8 @@ class Barostat : protected Pointers {
   void end_step();
   /// The step of length h is accepted.
   void note_step(double h);
+  void keep() { kept = cell; }
+  void put_back();
   void rescale(double ratio);
   /// True if the box is tilted so much that another cell of the same lattice should replace it.
   bool is_tilted() const { return asked.shears() && asked.flip && box.is_tilted(); }
@@ -178,7 +180,7 @@ class Barostat : protected Pointers {
   Temperature &temperature;
   std::optional<MolecularVirial> virial;    ///< of a box that moves
   Box box;
-  CellHistory cell;
+  CellHistory cell, kept;
   RememberedLoads times{false};    ///< with a changing step: of the last drives of the box
   bool changing_step = false;      ///< keyword tolerance
   double width = 0.0;              ///< the step of the histories

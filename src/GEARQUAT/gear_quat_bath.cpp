@@ -421,14 +421,16 @@ void Bath::follow_velocities(double h)
 
 void Bath::keep()
 {
-  kept = Fields();
-  fields(kept);
+  kept = chains;
+  kept_heat = heat;
+  box.keep();
 }
 
 void Bath::put_back()
 {
-  Fields before(kept.numbers());
-  fields(before);
+  chains = kept;
+  heat = kept_heat;
+  box.put_back();
 }
 
 void Bath::rescale(double ratio)

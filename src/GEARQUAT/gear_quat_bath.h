@@ -123,10 +123,10 @@ class Bath : protected Pointers {
 
   Bodies &bodies;
   ThermostatWords words;
-  const int thermostats;        ///< number of chains: of both parts, or one for both
-  std::vector<Chain> chains;    ///< the last one is that of the box, if it has one
+  const int thermostats;              ///< number of chains: of both parts, or one for both
+  std::vector<Chain> chains, kept;    ///< the last one is that of the box, if it has one
   IsokineticConstraint isokinetic;
-  ScalarHistory heat;    ///< removed by isokinetic, or S of the box
+  ScalarHistory heat, kept_heat;    ///< removed by isokinetic, or S of the box
   int values_of_heat = 0;
   CorrectorCoefficients::Array coefficients_of_heat;    ///< of a first-order equation
 
@@ -146,8 +146,6 @@ class Bath : protected Pointers {
   bool warned[2] = {};                    ///< of that
   std::string told;                       ///< last message of the degrees of freedom
   Column<Integrator::Pending> pending;    ///< in correct()
-
-  Fields kept;    ///< before a step that may be undone
 
   // the start: 2K, which drives a chain from the start to each node, and the rate of the heat
 

@@ -148,7 +148,7 @@ DERIVED, MESSAGES, OTHERS = "from members in the list", "for messages only", "ot
 #: the members of classes that are in no list; "classes": a class that has its own list elsewhere
 NOT_IN_A_FILE = {
     "chain Chain": {COMMAND: "length", DERIVED: "begun", STEP: "latest width"},
-    "scalar ScalarHistory": {},
+    "history ScalarHistory": {},
     "cell CellHistory": {COMMAND: "n", STEP: "c weight total"},
     "box Box": {COMMAND: "fixed", DERIVED: "m inverse change inverse_change"},
     "virial MolecularVirial": {COMMAND: "id", OTHERS: "sites"},
@@ -183,7 +183,7 @@ NOT_IN_A_FILE = {
         OTHERS: "bodies",
         DERIVED: "made xi of_all",
         RUN: "at_nodes held",
-        STEP: "kept coefficients_of_heat strong same_bodies pending",
+        STEP: "kept kept_heat coefficients_of_heat strong same_bodies pending",
         MESSAGES: "told warned",
     },
     "barostat Barostat": {
@@ -192,7 +192,7 @@ NOT_IN_A_FILE = {
         DERIVED: "rate of_bodies",
         RUN: "since longest_body strongest begun_box begun_matrix drive_of_smaller "
         "cell_at_nodes time_of_node present",
-        STEP: "local_error",
+        STEP: "local_error kept",
         MESSAGES: "told warned_mesh",
     },
     "sites Sites": {
