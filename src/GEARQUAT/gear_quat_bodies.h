@@ -91,9 +91,6 @@ class Bodies {
   const Correction &last_of(int ibody) const { return last[ibody]; }
   /// True if every rank has this body.
   bool is_large(int ibody) const { return !large.empty() && body[ibody].large; }
-  /// True if states and loads are sent between ranks: some bodies, here or elsewhere, have copies.
-  bool have_copies() const { return copies; }
-  void set_copies(bool any) { copies = any; }
   /// The load without the components that are turned off for this body.
   Load acting(int ibody) const { return acting_load(load[ibody], body[ibody].off); }
   /// The rotation matrix space -> body of the state, as of the last update of the frame.
@@ -180,7 +177,6 @@ class Bodies {
   bigint nbodies = 0;
   int nchanges = 0;    ///< of nbodies, insertions and removals
   unsigned nlayouts = 0;
-  bool copies = false;
 
   std::vector<Body> body;
   std::vector<BodyState> state;

@@ -119,7 +119,7 @@ void DrivenBox::move_center(int ibody, const double *way)
 
 void DrivenBox::place_sites()
 {
-  if (bodies.have_copies()) ownership.spread_moved();
+  ownership.spread_moved();
   sites.place(false);
   ownership.note_box();
 }
@@ -176,10 +176,8 @@ void DrivenBox::follow_images()
         (atom->mask[owner] & domain->deform_groupbit);
     found[ibody].torque_space[0] = passes;
   }
-  if (bodies.have_copies()) {
-    ownership.sum(found);
-    ownership.spread(found);
-  }
+  ownership.sum(found);
+  ownership.spread(found);
   for (int ibody = 0; ibody < bodies.nhere(); ++ibody) {
     if (found[ibody].torque_space[0] != 0.0) pass_faces(ibody, found[ibody].force);
     std::copy_n(found[ibody].force, 3, bodies.change_body(ibody).image.begin());

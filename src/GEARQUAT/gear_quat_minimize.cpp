@@ -41,7 +41,7 @@ void Minimization::measure()
     add3(d, moments[site.body].arm);
     for (int n = 0; n < 9; ++n) moments[site.body].products[n] += d[n / 3] * d[n % 3];
   }
-  if (bodies.have_copies()) ownership.sum(moments.all());
+  ownership.sum(moments.all());
 }
 
 void Minimization::check_loads()
@@ -86,7 +86,7 @@ void Minimization::fit()
       for (int b = 0; b < 3; ++b) sum.products[3 * a + b] += way * arm[b];
     }
   }
-  if (bodies.have_copies()) ownership.sum(sums);
+  ownership.sum(sums);
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     const Move move = nearest_move(arms_of(ibody), bodies.body_at(ibody).off, sums[ibody]);
     BodyState &s = bodies.change_state(ibody);
@@ -96,7 +96,7 @@ void Minimization::fit()
     add3(move.way, s.center);
     bodies.update_frame(ibody);
   }
-  if (bodies.have_copies()) ownership.spread_moved();
+  ownership.spread_moved();
   sites.place(false);
   fitted = true;
 }
@@ -121,7 +121,7 @@ void Minimization::project(double **f)
     }
     twists[ibody] = nearest_twist(arms_of(ibody), bodies.body_at(ibody).off, load);
   }
-  if (bodies.have_copies()) ownership.spread(twists);
+  ownership.spread(twists);
   for (const Site &site : sites) {
     const Twist &of_body = twists[site.body];
     double arm[3];

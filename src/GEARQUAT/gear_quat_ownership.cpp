@@ -390,7 +390,6 @@ bool Ownership::take_stock()
   bodies.set_number(all[0]);
   natoms = all[1];
   any_ghosts = all[5] > 0;
-  bodies.set_copies(any_ghosts || number_of_large() > 0);
   if (all[1] != all[2] || all[3] > 0) check_whole();
   if (all[3] > 0) {
     promote();

@@ -26,7 +26,7 @@ using namespace GearQuat;
 Restart::Restart(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, Ownership &ownership,
                  Step &step) :
     Pointers(lmp),
-    fix(fix), bodies(bodies), ownership(ownership), step(step), waiting(false), place(0)
+    fix(fix), bodies(bodies), ownership(ownership), step(step)
 {
 }
 
@@ -58,7 +58,6 @@ void Restart::read(const char *buf)
   std::memcpy(data.data(), buf + sizeof(head), data.size() * sizeof(double));
   file = Fields(data);
   file(extended, natoms);
-  waiting = true;
 }
 
 /// The first number is the count of numbers, with which other fixes skip these data.
@@ -97,9 +96,10 @@ std::vector<const double *> Restart::packed_atoms() const
 
 bool Restart::resume(int group)
 {
-  waiting = false;
   using Resumed = Ownership::Resumed;
-  step.adopt_scheme(file);
+  Fields data;
+  std::swap(data, file);
+  step.adopt_scheme(data);
   const Resumed found = ownership.resume(packed_atoms(), extended != 0.0, group);
   if (found == Resumed::NONE) {
     if (comm->me == 0)
@@ -108,7 +108,7 @@ bool Restart::resume(int group)
                      "as in the restart file; they are rebuilt from their atoms");
     return false;
   }
-  if (!step.read(file))
+  if (!step.read(data))
     error->all(FLERR, "Fix gear/quat: the data of fix {} in the restart file are damaged", fix->id);
   if (found == Resumed::FEWER)    // the motion of the others contributes to derivatives of forces
     step.forget(fmt::format("Fix gear/quat {}: some bodies of the restart file are in no body of "

@@ -26,7 +26,7 @@ class Restart : protected Pointers {
   void write(FILE *fp) const;
   /// Ends the run if a release with another format has written the file.
   void read(const char *buf);
-  bool was_read() const { return waiting; }
+  bool was_read() const { return file.reads(); }
 
   int pack(int atom, double *buf) const;
   int size(int atom) const { return HEAD + ownership.packed_size(atom); }
@@ -53,8 +53,7 @@ class Restart : protected Pointers {
 
   Fields file;                            ///< the numbers that have not been read yet
   double extended = 0.0, natoms = 0.0;    ///< of the file: are there extended sites; all atoms
-  bool waiting;                           ///< for resume()
-  int place;
+  int place = 0;
 
   static constexpr double MAGIC = 0x6765617271756174;    ///< "gearquat"
   static constexpr double FORMAT = 10;

@@ -320,10 +320,8 @@ void Sites::refuse_tears() const
   for (const Site &site : sites)
     if (ownership.owned_by(site.atom) >= 0)
       unwrapped(site, owners[site.body].found, owners[site.body].expected);
-  if (bodies.have_copies()) {
-    ownership.sum(owners);
-    ownership.spread(owners);
-  }
+  ownership.sum(owners);
+  ownership.spread(owners);
 
   tagint here[3] = {0, 0, 0};    // bodies that are torn, cut by the box, or have another shape
   for (const Site &site : sites) {
@@ -414,7 +412,7 @@ void Sites::gather(const double *forces, double **torque)
         loads[ibody] = sum;
       });
   if (!extended.sites.empty()) extended.add_torques(torque, loads);
-  if (bodies.have_copies()) ownership.sum(loads);
+  ownership.sum(loads);
   for (int ibody = 0; ibody < bodies.nmoved() && domain->dimension == 2; ++ibody)
     loads[ibody].force[2] = loads[ibody].torque_space[0] = loads[ibody].torque_space[1] = 0.0;
 

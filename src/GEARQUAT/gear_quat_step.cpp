@@ -631,7 +631,7 @@ void Step::end(double **f, double **torque)
     tolerance->evaluate(vflag_of_step);
   }
   accept(f);
-  if (bodies.have_copies()) ownership.spread_moved();
+  ownership.spread_moved();
   sites.place(true);
   if (reads_at_end(lmp, fix)) comm->forward_comm();    // ghosts are where forces were evaluated
 }
@@ -703,7 +703,7 @@ void Step::predict(double **f)
 
 void Step::place_prediction()
 {
-  if (bodies.have_copies()) ownership.spread_moved();
+  ownership.spread_moved();
   sites.place(velocities_read);
 }
 
