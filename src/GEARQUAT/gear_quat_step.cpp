@@ -81,27 +81,30 @@ void Step::meet_bodies()
 
 void Step::init()
 {
-  if (tolerance) tolerance->refuse_scene();
-  for (const Step *other : fleet.members) {
-    if (other == this || !tolerance) continue;
-    const Fix *its = other->fix;
-    if (other->tolerance)
+  if (tolerance && utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR,
+               "Fix gear/quat tolerance cannot be used with run_style respa, whose levels "
+               "have different steps");
+  for (const auto *other : modify->get_fix_list()) {
+    if (other == fix || !tolerance) continue;
+    const Step *same = fleet.find(other);
+    if (known(Fact::TIME_STEP, other) || (same && same->tolerance))
       error->all(
           FLERR,
           "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
           "do so",
-          its->id, its->style);
-    if (other->args.scheme.tuned)
+          other->id, other->style);
+    if (same && same->args.scheme.tuned)
       error->all(FLERR,
                  "Fix gear/quat tolerance: fix {} ({}) follows the changing time step, and with "
                  "tuned coefficients errors from a change decay too slowly; give it corrector "
                  "gear, or let this fix move its bodies",
-                 its->id, its->style);
-    if (comm->me == 0)
+                 other->id, other->style);
+    if (same && comm->me == 0)
       error->warning(FLERR,
                      "Fix gear/quat tolerance: nothing controls the errors of the bodies of fix {} "
                      "({}), which follows the time step of this fix",
-                     its->id, its->style);
+                     other->id, other->style);
   }
   if (tolerance && started) tolerance->keep_step();
   follow_length();

@@ -89,21 +89,6 @@ Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const St
   if (control.energy) this->control.eps /= force->mvv2e;
 }
 
-void Tolerance::refuse_scene() const
-{
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR,
-               "Fix gear/quat tolerance cannot be used with run_style respa, whose levels "
-               "have different steps");
-  for (auto *other : modify->get_fix_list())
-    if (other != fix && known(Fact::TIME_STEP, other))
-      error->all(
-          FLERR,
-          "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
-          "do so",
-          other->id, other->style);
-}
-
 /* ----------------------------------------------------------------------
    start
 ------------------------------------------------------------------------- */

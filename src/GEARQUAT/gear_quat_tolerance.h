@@ -96,9 +96,6 @@ class Tolerance : protected Pointers {
   Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
             double every_time, Bodies &bodies, TimeStep &time_step);
 
-  /// Ends the run if another style changes the time step, or does not support its changes.
-  void refuse_scene() const;
-
   /// The scheme with the present number of loads.
   const Scheme &scheme() const { return present; }
   /// An integrator with the coefficients of the last prepare().
