@@ -9,7 +9,6 @@
 #include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 
-#include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -363,14 +362,11 @@ double Barostat::element(int n) const
 /// Refuses atoms outside of bodies.
 void Barostat::refuse_others() const
 {
-  bigint here = 0;
-  tagint last = 0;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    here += bodies.body_at(ibody).natoms;
-    last = std::max(last, bodies.body_at(ibody).id);
-  }
-  const bigint others = atom->natoms - over_ranks(MPI_SUM, here, world);
+  const bigint others = temperature.atoms_outside();
   if (others == 0) return;
+  tagint last = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    last = std::max(last, bodies.body_at(ibody).id);
   const double number = std::pow(10.0, std::ceil(std::log10(over_ranks(MPI_MAX, last, world) + 1)));
   error->all(FLERR,
              "Fix gear/quat: constant pressure requires all atoms to be in bodies of this fix, and "

@@ -46,26 +46,8 @@ class Box : protected Pointers {
 
   // between scaled and unscaled centers, with their velocities
 
-  void to_space(BodyState &s) const
-  {
-    double way[3], velocity[3];
-    for (int k = 0; k < 3; ++k) {
-      way[k] = s.center[k] - origin[k];
-      velocity[k] = s.velocity[k];
-    }
-    for (int k = 0; k < 3; ++k) s.center[k] += change.row_times(k, way);
-    m.times(velocity, s.velocity);
-  }
-  void to_scaled(BodyState &s) const
-  {
-    double way[3], velocity[3];
-    for (int k = 0; k < 3; ++k) {
-      way[k] = s.center[k] - origin[k];
-      velocity[k] = s.velocity[k];
-    }
-    for (int k = 0; k < 3; ++k) s.center[k] += inverse_change.row_times(k, way);
-    inverse.times(velocity, s.velocity);
-  }
+  void to_space(BodyState &s) const { map(m, change, s); }
+  void to_scaled(BodyState &s) const { map(inverse, inverse_change, s); }
 
   /// The reference and the fixed point.
   template <class V> void fields(V &v) { v(reference, origin); }
@@ -77,6 +59,17 @@ class Box : protected Pointers {
   double origin[3] = {};
   Upper m = Upper::one(), inverse = Upper::one();
   Upper change, inverse_change;    ///< M - 1 and M^-1 - 1
+
+  void map(const Upper &matrix, const Upper &less_one, BodyState &s) const
+  {
+    double way[3], velocity[3];
+    for (int k = 0; k < 3; ++k) {
+      way[k] = s.center[k] - origin[k];
+      velocity[k] = s.velocity[k];
+    }
+    for (int k = 0; k < 3; ++k) s.center[k] += less_one.row_times(k, way);
+    matrix.times(velocity, s.velocity);
+  }
 };
 
 }    // namespace LAMMPS_NS::GearQuat

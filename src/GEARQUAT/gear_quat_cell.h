@@ -183,10 +183,11 @@ class CellHistory {
   // in the present pass; before the first pass and in a completed step, from the rows
 
   Upper matrix() const { return row(0) + total.scaled(c[0]); }
-  /// M'
-  Upper velocity(double h) const { return (row(1) + total.scaled(c[1])).scaled(1.0 / h); }
-  /// G
-  Upper rate(double h) const { return velocity(h) * matrix().inverse(); }
+  /// G = M' M^-1
+  Upper rate(double h) const
+  {
+    return (row(1) + total.scaled(c[1])).scaled(1.0 / h) * matrix().inverse();
+  }
 
   /// M'' from the drive, by Eq. P4.
   static Upper acceleration(const Upper &matrix, const Upper &rate, const Upper &drive,

@@ -103,11 +103,16 @@ bool Temperature::has(int ibody, Part part, int component) const
   return domain->dimension == 2 ? !(off & torque_off(2)) : (off & NO_TORQUE) != NO_TORQUE;
 }
 
-std::string Temperature::find_outside() const
+bigint Temperature::atoms_outside() const
 {
   bigint here = 0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here += bodies.body_at(ibody).natoms;
-  const bigint others = atom->natoms - over_ranks(MPI_SUM, here, world);
+  return atom->natoms - over_ranks(MPI_SUM, here, world);
+}
+
+std::string Temperature::find_outside() const
+{
+  const bigint others = atoms_outside();
   if (others > 0) return fmt::format("{} atoms are in no body of this fix", others);
   if (const Fix *other = fix_with_forces(lmp, fix)) return name_of(other) + " may exert forces";
   for (const auto *other : modify->get_fix_list())

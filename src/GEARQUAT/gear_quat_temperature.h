@@ -86,6 +86,9 @@ class Temperature : protected Pointers {
   /// Of the present states.  Collective.
   void sum_present();
 
+  /// Atoms in no body of this fix.  Collective.
+  bigint atoms_outside() const;
+
   // after count()
 
   bool has_translation() const { return count_of[0] + count_of[1] + count_of[2] > 0.0; }

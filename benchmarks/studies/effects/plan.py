@@ -78,7 +78,7 @@ EFFECTS = (
         own=r"GearQuat::(Integrator|Kinematics)::(correct|body_state|correct_all<.*>)\("
         r"|GearQuat::Bodies::update_frame\(",
     ),
-    Effect("torques of forces", MOVED, FULL, own=r"GearQuat::Sites::gather_loads"),
+    Effect("torques of forces", MOVED, FULL, own=r"GearQuat::Sites::gather"),
     Effect("finite size", SIZED, UNSIZED, own=r"GearQuat::Extended::", off=UNSIZED, never=FULL),
     Effect(
         "images",
