@@ -168,32 +168,21 @@ void Tolerance::change_loads(int loads)
   present.rows = remembered.values();
 }
 
-void Tolerance::keep_step()
+void Tolerance::keep_step(bool begun)
 {
   if (update->dt == time_step.length()) return;
-  tell_of_step();
-  time_step.change(time_step.length());
-}
-
-void Tolerance::put_back_begun_step()
-{
-  if (const Fix *other = integrated_before(fix))
+  if (const Fix *other = begun ? integrated_before(fix) : nullptr)
     error->all(
         FLERR,
         "Fix gear/quat tolerance: the time step was changed before a run with pre no, and fix "
         "{} ({}) has begun the first step with it; leave out pre no",
         other->id, other->style);
-  tell_of_step();
-  time_step.change_begun(time_step.length());
-}
-
-void Tolerance::tell_of_step() const
-{
   if (comm->me == 0)
     utils::logmesg(lmp,
                    "Fix gear/quat tolerance: keeping time step {:.3g}; the timestep command "
                    "({:.3g}) is ignored\n",
                    time_step.length(), update->dt);
+  begun ? time_step.change_begun(time_step.length()) : time_step.change(time_step.length());
 }
 
 /* ----------------------------------------------------------------------
@@ -238,7 +227,7 @@ static constexpr double ROUNDING_OF_TIME = 1.0e-6;
 
 void Tolerance::begin_step()
 {
-  if (update->dt != time_step.length()) put_back_begun_step();
+  keep_step(true);
   if (update->ntimestep == update->firststep + 1) begin_run();
   tries = 0;
   begun_with = update->dt;

@@ -135,8 +135,9 @@ class Tolerance : protected Pointers {
   /// With thermo 0, prints thermo output at the multiples of every_time, if the present step ends
   /// at one of them.  To be called after TimeStep::change().
   void order_output();
-  /// Before a run: the timestep command sets only the first step, so histories keep their length.
-  void keep_step();
+  /// Before a run, or when its first step has begun: the timestep command sets only the first step of
+  /// histories, which keep their length.
+  void keep_step(bool begun);
 
   double element(int n) const;
   void fields(Fields &v);
@@ -164,8 +165,6 @@ class Tolerance : protected Pointers {
   Record record = {};
 
   void change_loads(int loads);
-  void put_back_begun_step();
-  void tell_of_step() const;
   const Fix *integrated_before(const Fix *begins) const;
   double largest_speed() const;
   double farthest_step(double speed) const;
