@@ -271,14 +271,18 @@ bool GearQuat::makes_forces(LAMMPS *lmp, const Fix *owner)
   return false;
 }
 
+/// Called in every step: Modify::get_fix_list() would make a list.
 bool GearQuat::reads_at_end(LAMMPS *lmp, const Fix *owner)
 {
   const bigint now = lmp->update->ntimestep;
+  const Modify *modify = lmp->modify;
   if (lmp->output->next == now) return true;
-  for (auto *other : lmp->modify->get_fix_list())
-    if (other != owner && other->nevery > 0 && now % other->nevery == 0 &&
-        (lmp->modify->get_fix_mask(other) & END_OF_STEP))
+  for (int i = 0; i < modify->nfix; ++i) {
+    const Fix *other = modify->fix[i];
+    if ((modify->fmask[i] & END_OF_STEP) && other != owner && other->nevery > 0 &&
+        now % other->nevery == 0)
       return true;
+  }
   return false;
 }
 
