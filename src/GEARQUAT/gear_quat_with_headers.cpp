@@ -3,21 +3,50 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-#include "gear_quat_given_bodies.h"
+/* What needs headers that an installed LAMMPS lacks.  A plugin for such a LAMMPS has
+   cmake/plugin/without_headers.cpp instead. */
 
+#include "gear_quat_extended.h"
+#include "gear_quat_forces.h"
+#include "gear_quat_given_bodies.h"
 #include "gear_quat_shapes.h"
 
 #include "atom.h"
+#include "atom_vec_ellipsoid.h"
+#include "atom_vec_line.h"
+#include "atom_vec_tri.h"
 #include "comm.h"
 #include "error.h"
 #include "lammps.h"
 #include "molecule.h"
+#include "respa.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
+
+/* ----------------------------------------------------------------------
+   run styles
+------------------------------------------------------------------------- */
+
+std::vector<double> RespaForces::steps(LAMMPS *lmp)
+{
+  const auto *respa = dynamic_cast<Respa *>(lmp->update->integrate);
+  if (!respa) return {};
+  return std::vector<double>(respa->step, respa->step + respa->nlevels);
+}
+
+void Forces::clear()
+{
+  update->integrate->force_clear();
+}
+
+/* ----------------------------------------------------------------------
+   mass, center and inertia in a molecule template
+------------------------------------------------------------------------- */
 
 static constexpr double SAME = 1.0e-6;       // numbers of a file have few digits
 static constexpr double ROUNDED = 1.0e-3;    // of a moment
@@ -101,4 +130,61 @@ std::vector<StatedMolecule> GearQuat::read_stated(LAMMPS *lmp, const std::string
   for (int n = 0; molecules && n < molecules[0]->nset; ++n)
     all.push_back(::read_stated(lmp, molecules[n], template_id));
   return all;
+}
+
+/* ----------------------------------------------------------------------
+   orientations in LAMMPS' atom styles.  LAMMPS keeps the corners of a triangle in a frame that is
+   principal only if its data file has the triangle at the origin: the own frame follows from the
+   corners, which do not change
+------------------------------------------------------------------------- */
+
+const bool Extended::READS_ATOM_STYLES = true;
+
+void Extended::find_atom_styles()
+{
+  ellipsoids = dynamic_cast<AtomVecEllipsoid *>(atom->style_match("ellipsoid"));
+  lines = dynamic_cast<AtomVecLine *>(atom->style_match("line"));
+  triangles = dynamic_cast<AtomVecTri *>(atom->style_match("tri"));
+}
+
+void Extended::read_bonus(int i, double mass, Own &mine) const
+{
+  if (mine.shape == ELLIPSOID) {
+    const auto &bonus = ellipsoids->bonus[atom->ellipsoid[i]];
+    ellipsoid_moments(mass, bonus.shape, mine.moments);
+    from_lammps(bonus.quat, mine.q);
+  } else if (mine.shape == LINE) {
+    const auto &bonus = lines->bonus[atom->line[i]];
+    line_moments(mass, bonus.length, mine.moments);
+    quaternion_about_z(bonus.theta, mine.q);
+  } else if (mine.shape == TRIANGLE) {
+    const auto &bonus = triangles->bonus[atom->tri[i]];
+    double of_corners[4], principal[4];
+    triangle_moments(mass, bonus.c1, bonus.c2, bonus.c3, mine.moments, principal);
+    from_lammps(bonus.quat, of_corners);
+    w_times(of_corners, principal, mine.q);
+  }
+}
+
+void Extended::find_corners(Site &site) const
+{
+  const auto &bonus = triangles->bonus[atom->tri[site.atom]];
+  double moments[3], principal[4];
+  triangle_moments(1.0, bonus.c1, bonus.c2, bonus.c3, moments, principal);
+  for (int k = 0; k < 3; ++k) site.corners[k] = -principal[k];
+  site.corners[3] = principal[3];
+}
+
+void Extended::write_bonus(const Site &site, int shape, const double *q) const
+{
+  const int i = site.atom;
+  if (shape == ELLIPSOID) {
+    to_lammps(q, ellipsoids->bonus[atom->ellipsoid[i]].quat);
+  } else if (shape == LINE) {
+    lines->bonus[atom->line[i]].theta = angle_about_z(q);
+  } else if (shape == TRIANGLE) {
+    double of_corners[4];
+    w_times(q, site.corners, of_corners);
+    to_lammps(of_corners, triangles->bonus[atom->tri[i]].quat);
+  }
 }
