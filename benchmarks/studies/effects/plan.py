@@ -110,7 +110,6 @@ EFFECTS = (
         "masks",
         moved(words="force * on on off"),
         MOVED,
-        own=r"GearQuat::(Bodies::acting|acting_load|work_between)\(",
     ),
     Effect(
         "isokinetic",
