@@ -506,8 +506,16 @@ std::vector<double> Bath::rates_of_unknowns() const
   return found;
 }
 
+void Bath::settle_fresh(double h)
+{
+  for (size_t c = 0; c < chains.size(); ++c)
+    chains[c].begin_settled(target_of(c, 0.0, h), twice_of(c), h);
+  note_friction();
+}
+
 void Bath::begin_start(const StartNodes &nodes)
 {
+  settle_fresh(nodes.h);
   held.clear();
   for (size_t c = 0; c < chains.size(); ++c)
     held.push_back(chains[c].is_stiff(target_of(c, 0.0, nodes.h), twice_of(c), nodes.h,
@@ -560,6 +568,7 @@ void Bath::seed(const StartNodes &nodes, int pairs, int values)
 
 void Bath::seed_local(double h, int terms)
 {
+  settle_fresh(h);
   for (size_t c = 0; c < chains.size(); ++c) {
     const double now = twice_of(c);
     chains[c].seed(&now, 0, 0.0, 1);

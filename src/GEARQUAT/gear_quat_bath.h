@@ -164,6 +164,7 @@ class Bath : protected Pointers {
   Friction friction_of(int ibody) const;
   void sum_present();
   void note_friction();
+  void settle_fresh(double h);
   void share_friction();
   void begin_passes(double h);
   void add(int ibody, const double *velocity, const double *omega_body,

@@ -84,6 +84,7 @@ class Chain {
   static constexpr int MOST_SUMS = MOST_ROWS + 2;
   /// A chain with STIFF sub-steps per step is stiff; beyond GIVEN_UP the solution is abandoned.
   static constexpr int STIFF = 4, GIVEN_UP = 200000;
+  static constexpr double SETTLING = 10.0;    ///< steps until a stiff chain varies slowly
 
   explicit Chain(int length) : length(length) {}
 
@@ -136,6 +137,19 @@ class Chain {
     for (int k = 0; k < length; ++k) largest = std::max(largest, std::fabs(begun[k]));
     const ChainDrive constant = ChainDrive::through(1, &h, &twice_kinetic);
     return largest * steps * std::fabs(h) > 0.5 || flow(target, constant, h, 1.0).substeps >= STIFF;
+  }
+
+  /// A stiff chain without a past changes abruptly and then slowly: its motion in the first steps
+  /// of h, with a constant 2K, is taken as its past.  E stays zero.
+  void begin_settled(const ChainTarget &target, double twice_kinetic, double h)
+  {
+    if (known > 0 || begun != Variables() || !is_stiff(target, twice_kinetic, h, 1)) return;
+    const ChainDrive constant = ChainDrive::through(1, &h, &twice_kinetic);
+    const Flow found = flow(target, constant, std::fabs(h), SETTLING);
+    if (found.substeps == GIVEN_UP) return;
+    now = found.y;
+    now[length] = -moving(target, now);
+    begun = now;
   }
 
   /// One pass of a step of h: the variables at its end, where the bodies have 2K = twice_kinetic.

@@ -330,7 +330,7 @@ TEST(Chain, IsStableFarFromTheTargetWithAnyNumberOfVariables)
         for (const int length : {1, 2, 3, 10})
           EXPECT_LT(
               gas_change(with(MOMENTUM, 8), freedoms, ratio, 1.0, damp, length, 1.0, 5.0 * damp),
-              damp > 10.0 ? 3.0e-4 : 0.05)
+              damp > 10.0 ? 1.0e-4 : 0.05)
               << freedoms << " " << ratio << " " << damp << " " << length;
 }
 

@@ -117,6 +117,7 @@ struct Host {
   void start()
   {
     const Collocation collocation(scheme.start_values());
+    if (length) chain.begin_settled(target_of(0.0), twice_kinetic(), h);
     Search search(*this, collocation);
     const StartFound found = find_start(scheme.start_values(), h, search, StartPlan::COUPLED);
     states = search.at_start;
