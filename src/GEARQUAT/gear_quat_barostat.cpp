@@ -533,13 +533,17 @@ void Barostat::seed(const StartNodes &nodes, int pairs)
   cell.seed(series, Collocation::terms_of(pairs), nodes.spacing, nodes.h);
 }
 
+/// Steps of keyword tolerance grow fast after a start.  The loads before it, which are assumed to be
+/// constant, are longer ago than these steps, so that their polynomial does not amplify the changes.
+static constexpr double FORMER_STEPS = 16.0;
+
 void Barostat::seed_local(double h, int terms, double xi)
 {
   if (!moves()) return;
   const Upper second = begin_acceleration(xi), &matrix = box.matrix();
   const Upper series[3] = {matrix, (rate * matrix).scaled(h), second.scaled(0.5 * h * h)};
   cell.seed(series[0].m.data(), terms, h, h);
-  times.begin(SECOND_PAPER - 2, std::fabs(h));
+  times.begin(SECOND_PAPER - 2, FORMER_STEPS * std::fabs(h));
 }
 
 /* ----------------------------------------------------------------------
