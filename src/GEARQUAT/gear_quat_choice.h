@@ -15,8 +15,9 @@
    end of their spectrum.  A free rotation has none.  Accelerations that change velocities by less
    than rounding count as none.  A start has computed these derivatives.  The rows of a history
    cannot replace them: with tuned coefficients the errors of the higher rows make z up to twice as
-   large.  Where derivatives are unknown, the root mean square frequency of rotations, from the sums
-   of torque^2/I and I omega^2, is used instead.
+   large.  Where derivatives are unknown, as beside atoms that other fixes move, five values are
+   taken, which conserve energy up to the longest steps.  The table of rates then has the root mean
+   square frequency of rotations, from the sums of torque^2/I and I omega^2.
 
    More values give a higher order, but a narrower range of frequencies that conserves energy.
    The crossover from nine to five values follows from measured drifts of liquids (doc/theory.md).
@@ -42,6 +43,14 @@ class MotionSums {
   /// kinetic energy of bodies with derivatives
   static constexpr int SUMS = 5;
   double sums[SUMS] = {};
+
+  /// Of bodies whose derivatives are not known: any vibrations are possible.
+  static MotionSums unknown()
+  {
+    MotionSums all;
+    all.sums[2] = 1.0;
+    return all;
+  }
 
   /// A body at the beginning of a series with steps of this length.
   void add(const RigidBody &body, const BodyState &state, const TaylorSeries &series, double step)
@@ -96,8 +105,7 @@ class MotionSums {
   }
 
   // by the root mean square frequency: 1.75 times that in SPC/E at 300 K, 4 times and more in fluids
-  // whose bodies collide rarely; an edge that is too large costs only accuracy, which a start without
-  // derivatives does not have, and the least part causes no false warning
+  // whose bodies collide rarely; the least part causes no false warning
   static constexpr double EDGE_BY_MEAN = 3.0, LEAST_PART = 1.75 / EDGE_BY_MEAN;
 
  private:

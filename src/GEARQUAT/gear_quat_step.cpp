@@ -331,7 +331,7 @@ void Step::seed(int ibody, int terms)
 
 void Step::seed_local(int terms)
 {
-  choose_scheme(sums_by_loads());
+  choose_scheme(MotionSums::unknown());
   bath.measure();
   bath.seed_local(length(), terms);
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) seed(ibody, terms);
