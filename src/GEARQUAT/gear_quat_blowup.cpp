@@ -102,5 +102,7 @@ std::string Blowup::remedy(int ibody, const BodyState &s, double h) const
     return fmt::format("leave out dtmin, or use one much shorter than {:g}", args.control.shortest);
   if (args.scheme.remembers)
     return fmt::format("use a smaller tolerance, or a dtmax shorter than {:g}", size);
-  return fmt::format("halve the time step, {:g}, until the total energy is conserved", size);
+  return fmt::format("halve the time step, {:g}, until the run is stable; atoms that overlap have "
+                     "to begin farther apart",
+                     size);
 }

@@ -319,7 +319,7 @@ void GearQuat::warn_of_excluded_images(LAMMPS *lmp, const Fix *fix, const Bodies
     if (body.rigid.rotational_freedoms() == 0 || (body.off & torque_off(2))) continue;
     double x[3], place[3];
     sites.unwrapped(site, x, place);
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < lmp->domain->dimension; ++k) {
       const double span = 2.0 * std::fabs(place[k] - bodies.state_of(site.body).center[k]);
       if (lmp->domain->periodicity[k] && span + force->pair->cutforce >= lmp->domain->prd[k] &&
           is_excluded(lmp, site.atom))

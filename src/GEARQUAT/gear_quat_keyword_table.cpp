@@ -193,7 +193,8 @@ const KeywordRules &GearQuat::keyword_rules()
     {{"iso", "aniso", "tri"}, "", R::EXCLUDE, PRESSURE, {}, "it sets all directions"},
     {{"iso"}, "", R::EXCLUDE, {"couple"}, {}, "it couples all edges"},
     {{"tri", "xy", "xz", "yz"}, "", R::EXCLUDE, {"couple"}, {}, "edges of a box that shears change independently"},
-    {{"couple", "pchain", "ptemp", "flip", "dilate", "fixedpoint"}, "", R::REQUIRE, PRESSURE, {}, ""},
+    {{"couple"}, "", R::REQUIRE, {"aniso", "x", "y", "z"}, {}, ""},
+    {{"pchain", "ptemp", "flip", "dilate", "fixedpoint"}, "", R::REQUIRE, PRESSURE, {}, ""},
     {{"ptemp"}, "", R::EXCLUDE, {"temp"}, {}, "the temperature of temp determines the mass of the box"},
   };
   return rules;

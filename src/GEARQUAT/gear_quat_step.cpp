@@ -445,11 +445,10 @@ bool Step::read(Fields &file)
     return tuned ? "tuned" : "gear";
   };
   if (started)
-    utils::logmesg(
-        lmp,
-        "Fix gear/quat {}: histories of the restart file go on with values {}, corrector "
-        "{}\n",
-        fix->id, scheme().values(), corrector(scheme().tuned));
+    utils::logmesg(lmp, "Fix gear/quat {}: histories of the restart file go on{}\n", fix->id,
+                   tolerance ? ""
+                             : fmt::format(" with values {}, corrector {}", scheme().values(),
+                                           corrector(scheme().tuned)));
   if (started && of_file[TUNED] != mine[TUNED])
     error->warning(
         FLERR,

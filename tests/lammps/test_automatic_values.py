@@ -76,14 +76,14 @@ def test_random_forces(lmp_tree, data, words):
 
 def test_where_vibrations_are_not_known_there_are_five(lmp_tree, data):
     """Beside a fix that a start cannot follow."""
-    result = run(lmp_tree, data, after="fix v all viscous 1e-3", dt=0.1)
+    after = "fix v all press/langevin iso 1 1 1e9 temp 300 300 4711"
+    result = run(lmp_tree, data, after=after, dt=0.1)
     assert chosen(result)[0][0] == 5 and "because the motion is not known before it begins" in result.words
 
 
-def test_a_random_pressure_changes_no_number(lmp_tree, data):
-    """It acts on the box alone."""
-    after = "fix v all press/langevin iso 1 1 1e9 temp 300 300 4711"
-    assert chosen(run(lmp_tree, data, after=after, dt=0.1))[0][0] == 9
+def test_drag_changes_no_number(lmp_tree, data):
+    """It is smooth."""
+    assert chosen(run(lmp_tree, data, after="fix v all viscous 1e-3", dt=0.1))[0][0] == 9
 
 
 PLACES = 2.0 * np.stack(np.meshgrid(*3 * [np.arange(4)], indexing="ij"), axis=-1).reshape(-1, 3)

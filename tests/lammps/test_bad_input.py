@@ -146,7 +146,7 @@ ARGUMENTS = {
     "molecule x 1 1 1 y 1 2 1 couple xy": "couple: directions x and y need keywords with the same",
     "molecule y 1 1 1 couple yz": "couple: directions y and z need keywords with the same",
     "molecule z 1 1 1 couple xy": "couple: directions x and y need keywords with the same",
-    "molecule couple xy": "keyword couple requires keyword iso, aniso, tri",
+    "molecule couple xy": "keyword couple requires keyword aniso, x, y or z",
     "molecule pchain 3": "keyword pchain requires keyword iso, aniso, tri, x, y, z, xy, xz or yz",
     "molecule ptemp 1.0": "keyword ptemp requires keyword iso, aniso, tri",
     "molecule temp 1 1 0.1 flip no": "keyword flip requires keyword iso, aniso, tri",

@@ -28,7 +28,7 @@ WHERE = re.compile(
     r"atom (\d+); (.*?) \("
 )
 APART = "begin with atoms farther apart, for example after minimize or a run with keywords tolerance and temp"
-HALVE = "halve the time step, 0.01, until the total energy is conserved"
+HALVE = "halve the time step, 0.01, until the run is stable; atoms that overlap have to begin farther apart"
 
 
 def blow_up(lmp, deck, ranks=1):
