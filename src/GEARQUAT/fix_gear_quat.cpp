@@ -17,6 +17,7 @@
 #include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_report.h"
+#include "gear_quat_start.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -260,7 +261,8 @@ void FixGearQuat::update_bodies()
 /// f, torque: from all pair styles and fixes in the previous step.
 void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
-  step.start(f, torque);
+  const auto starters = step.start(f, torque);
+  if (!starters.empty()) Start(lmp, starters, step.length()).run();
   driven_box.follow();
   sites.advance_densities(update->dt);
   step.begin(vflag, f);

@@ -6,7 +6,6 @@
 #include "gear_quat_start.h"
 
 #include "gear_quat_ranks.h"
-#include "gear_quat_step.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -22,11 +21,14 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
-void Start::add(Step &step, bool needed)
+Start::Start(LAMMPS *lmp, const std::vector<Step::Starter> &fixes, double h) :
+    Pointers(lmp), h(h), collocation(SECOND_FEWEST)
 {
-  if (needed) step.bath.box.refer_to_box(h);
-  starters.push_back(
-      {step, needed, step.bodies.snapshot(), Column<Collocation::Workspace>(step.bodies)});
+  for (const auto &one : fixes) {
+    if (one.needed) one.step->bath.box.refer_to_box(h);
+    starters.push_back({*one.step, one.needed, one.step->bodies.snapshot(),
+                        Column<Collocation::Workspace>(one.step->bodies)});
+  }
 }
 
 int Start::most_values() const

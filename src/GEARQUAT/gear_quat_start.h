@@ -13,20 +13,18 @@
 #include "gear_quat_choice.h"
 #include "gear_quat_forces.h"
 #include "gear_quat_startup.h"
+#include "gear_quat_step.h"
 
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
 
-class Step;
-
 class Start : protected Pointers {
  public:
   /// Of all fixes that start together, with one set of nodes.  h: the step of the histories.
-  Start(LAMMPS *lmp, double h) : Pointers(lmp), h(h), collocation(SECOND_FEWEST) {}
-  /// needed: false if there are histories, which are kept if not all rows can be found.
-  void add(Step &step, bool needed);
+  /// Histories that can continue are kept if not all rows can be found.
+  Start(LAMMPS *lmp, const std::vector<Step::Starter> &fixes, double h);
 
   /// Computes derivatives consistent with the trajectory; if forces cannot be followed, the
   /// derivatives from the present loads, with a message on rank 0.  After the call atoms are as

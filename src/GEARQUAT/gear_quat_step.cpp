@@ -169,15 +169,12 @@ void Step::take_velocities(bigint of_step, bool end)
    which histories continue
 ------------------------------------------------------------------------- */
 
-/// If one fix needs a start, all others start with it, where a full start is possible.
-void Step::start(double **f, double **torque)
+std::vector<Step::Starter> Step::start(double **f, double **torque)
 {
   if (phase != Phase::SET_UP) {
     take_velocities(update->ntimestep - 1, true);
-    return;
+    return {};
   }
-  std::vector<Step *> full;
-  std::vector<bool> needed;
   for (Step *one : fleet.members) {
     one->take_velocities(update->ntimestep - 1, true);
     one->ownership.spread_states();
@@ -189,35 +186,30 @@ void Step::start(double **f, double **torque)
     one->started = !one->has_to_start(f);
     if (!one->started) one->tolerance->begin(one->bath.longest_step(), fleet.members.front()->fix);
   }
+  std::vector<Starter> full;
   for (Step *one : fleet.members) {
     one->phase = Phase::READY;
     const bool needs = one->tolerance ? !one->started : one->has_to_start(f);
     if (needs) one->watch_loads(f);
     if (one->bootstraps()) {
-      full.push_back(one);
-      needed.push_back(needs);
+      full.push_back({one, needs});
     } else if (needs) {
       one->bath.box.refer_to_box(one->length());
       one->seed_local(one->tolerance ? 3 : 2);
       one->note_start();
     }
   }
-  start_together(full, needed);
-}
-
-void Step::start_together(const std::vector<Step *> &full, const std::vector<bool> &needed)
-{
-  if (!std::count(needed.begin(), needed.end(), true)) return;
 
   // Histories that could continue also start again if this gives the other fixes a start of full
   // order.
 
-  const bool some_go_on = std::count(needed.begin(), needed.end(), false) > 0;
-  const bool together = !some_go_on || full[0]->forces_can_be_followed();
-  Start start(full[0]->lmp, full[0]->length());
-  for (size_t n = 0; n < full.size(); ++n)
-    if (needed[n] || together) start.add(*full[n], needed[n]);
-  start.run();
+  const auto goes_on = [](const Starter &one) {
+    return !one.needed;
+  };
+  if (std::all_of(full.begin(), full.end(), goes_on)) return {};
+  if (std::any_of(full.begin(), full.end(), goes_on) && !full[0].step->forces_can_be_followed())
+    full.erase(std::remove_if(full.begin(), full.end(), goes_on), full.end());
+  return full;
 }
 
 /// Returns null if the histories can continue.  Collective.

@@ -27,8 +27,9 @@
 #include "gear_quat_arguments.h"
 #include "gear_quat_bath.h"
 #include "gear_quat_blowup.h"
+#include "gear_quat_choice.h"
 #include "gear_quat_fixes.h"
-#include "gear_quat_start.h"
+#include "gear_quat_forces.h"
 #include "gear_quat_tolerance.h"
 
 #include <array>
@@ -100,8 +101,13 @@ class Step : protected Pointers {
 
   // a step; f, torque: of atoms; all collective
 
-  /// f, torque: of the previous step, from all pair styles and fixes.
-  void start(double **f, double **torque);
+  struct Starter {
+    Step *step;
+    bool needed;    ///< false if there are histories, which can continue
+  };
+  /// f, torque: of the previous step, from all pair styles and fixes.  Returns the fixes that begin
+  /// together with a start of full order, none if all histories can continue.
+  std::vector<Starter> start(double **f, double **torque);
   void begin(int vflag, double **f);
   /// f, torque: of the predicted sites.
   void end(double **f, double **torque);
@@ -178,7 +184,6 @@ class Step : protected Pointers {
 
   /// True unless start zero or a tolerance is given: a start determines as many derivatives as it can.
   bool bootstraps() const { return args.start == Arguments::Start::BOOTSTRAP && !tolerance; }
-  static void start_together(const std::vector<Step *> &full, const std::vector<bool> &needed);
   bool has_to_start(double **f);
   /// History of one body from its state and the load that acts on it.  terms: 2 for the paper's
   /// start, in which all derivatives from the second on are zero, or 3 with the load.
