@@ -148,13 +148,6 @@ inline void project_norm(double *q)
   for (int i = 0; i < 4; ++i) q[i] *= factor;
 }
 
-/// Project a rate of the unit quaternion q onto q.rate = 0, Eq. 4.
-inline void project_rate(const double *q, double *rate)
-{
-  const double radial = dot4(q, rate);
-  for (int i = 0; i < 4; ++i) rate[i] -= radial * q[i];
-}
-
 /// The rotation about the z axis by an angle, and the inverse; the angle is in (-pi, pi].
 inline void quaternion_about_z(double angle, double *q)
 {

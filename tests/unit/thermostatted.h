@@ -1,4 +1,4 @@
-/* Bodies with one Nose-Hoover chain: `Host` replaces gear_quat_thermostat and the start. */
+/* Bodies with one Nose-Hoover chain: `Host` replaces gear_quat_bath and the start. */
 
 #pragma once
 
