@@ -81,6 +81,14 @@ def test_where_vibrations_are_not_known_there_are_five(lmp_tree, data):
     assert chosen(result)[0][0] == 5 and "because the motion is not known before it begins" in result.words
 
 
+def test_beside_atoms_of_another_fix_there_are_five(lmp_tree, data):
+    """For any loads at the beginning."""
+    before = "group still molecule 1:5\ngroup rest subtract all still\nfix others still nve\n"
+    for dt in (0.01 * SHORT, SHORT):
+        deck = water(data, before=before, steps=4, dt=dt).replace("fix move all", "fix move rest")
+        assert numbers(lmp_tree.succeed(deck)) == [5]
+
+
 def test_drag_changes_no_number(lmp_tree, data):
     """It is smooth."""
     assert chosen(run(lmp_tree, data, after="fix v all viscous 1e-3", dt=0.1))[0][0] == 9
