@@ -229,7 +229,7 @@ void GearQuat::warn_of_shapes(LAMMPS *lmp, const Bodies &bodies, const Ownership
    molecules that are only partly in bodies
 ------------------------------------------------------------------------- */
 
-/// What some atom of a molecule is.
+/// The kinds of atoms that a molecule has.
 struct Membership {
   int in_body, unmoved;    ///< unmoved: in no body, and no fix moves it
   void merge(const Membership &other)

@@ -104,8 +104,9 @@ class MotionSums {
     return sums[1] > 0.0 && h * h * sums[1] > LEAST_CHANGE * LEAST_CHANGE * sums[4];
   }
 
-  // by the root mean square frequency: 1.75 times that in SPC/E at 300 K, 4 times and more in fluids
-  // whose bodies collide rarely; the least part causes no false warning
+  // by the root mean square frequency: 1.75 times that in SPC/E at 300 K, which causes no false
+  // warning, and 4 times and more in fluids whose bodies collide rarely; a step that is advised has
+  // to be short enough for these, too
   static constexpr double EDGE_BY_MEAN = 3.0, LEAST_PART = 1.75 / EDGE_BY_MEAN;
 
  private:

@@ -577,8 +577,7 @@ void Step::warn_of_rates()
 }
 
 /// Returns the reason to start histories again with another number of values, null for none.
-/// Reasons are a change of the step or of forces.  Vibrations are from the last
-/// start.  Collective.
+/// Reasons are a change of the step or of forces.  Vibrations are from the last start.  Collective.
 const char *Step::another_scheme_suits()
 {
   if (!args.automatic_values || edge_rate == 0.0) return nullptr;
