@@ -118,16 +118,24 @@ void Forces::look_at_time()
   save();
   for (const bool of_fixes : {false, true}) {
     if (!why.empty() || (of_fixes && post_force.empty())) continue;
-    const std::vector<double> now = loads_at(update->ntimestep, of_fixes);
+    evaluate_at(update->ntimestep, of_fixes);
+    std::vector<double> now;
+    now.reserve(6 * (size_t) atom->nlocal);
     double largest = 0.0;
-    for (const double load : now) largest = std::max(largest, std::fabs(load));
+    for (double **rows : {atom->f, atom->torque})
+      for (int k = 0; rows && k < 3 * atom->nlocal; ++k) {
+        now.push_back(rows[0][k]);
+        largest = std::max(largest, std::fabs(rows[0][k]));
+      }
     const double same = SAME * over_ranks(MPI_MAX, largest, world);
     for (const bigint step : {EVERY_TIMES, AT_NO_TIMES}) {
       if (!why.empty()) break;
-      const std::vector<double> then = loads_at(step, of_fixes);
+      evaluate_at(step, of_fixes);
       int differs = 0;
-      for (size_t k = 0; k < now.size(); ++k)
-        if (std::fabs(then[k] - now[k]) > same) differs = 1;
+      auto then = now.begin();
+      for (double **rows : {atom->f, atom->torque})
+        for (int k = 0; rows && k < 3 * atom->nlocal; ++k)
+          if (std::fabs(rows[0][k] - *then++) > same) differs = 1;
       if (over_ranks(MPI_MAX, differs, world) && why.empty())
         why = of_fixes ? "an external force depends on time"
                        : fmt::format("forces depend on time (pair style {})", force->pair_style);
@@ -138,7 +146,7 @@ void Forces::look_at_time()
 
 /// Forces and torques of the styles, or of the fixes, at another step; reason() reports if one of
 /// them reads an energy or a pressure.
-std::vector<double> Forces::loads_at(bigint step, bool of_fixes)
+void Forces::evaluate_at(bigint step, bool of_fixes)
 {
   const bigint present = update->ntimestep;
   update->ntimestep = step;
@@ -158,11 +166,6 @@ std::vector<double> Forces::loads_at(bigint step, bool of_fixes)
     look_at_tallies(fmt::format("pair style {}", force->pair_style));
   }
   update->ntimestep = present;
-  const size_t n = 3 * (size_t) atom->nlocal;
-  std::vector<double> found;
-  if (n) found.assign(atom->f[0], atom->f[0] + n);
-  if (n && atom->torque_flag) found.insert(found.end(), atom->torque[0], atom->torque[0] + n);
-  return found;
 }
 
 /* ---------------------------------------------------------------------- */

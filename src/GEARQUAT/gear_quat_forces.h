@@ -90,7 +90,7 @@ class Forces : protected Pointers {
   std::string reader_of_variables() const;
   void look_at_variables();
   void look_at_time();
-  std::vector<double> loads_at(bigint step, bool of_fixes);
+  void evaluate_at(bigint step, bool of_fixes);
   void clear();
   void clear_owned();
   void evaluate_styles(int eflag, int vflag);

@@ -461,6 +461,7 @@ void Ownership::sum(double *values, int size)
 
 void Ownership::grow_arrays(int n)
 {
+  assigned.reserve(n);    // LAMMPS chooses by how much arrays grow
   assigned.resize(n);
   records.grow(n);
 }

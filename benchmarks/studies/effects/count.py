@@ -18,7 +18,7 @@ HOOKS = re.compile(r"LAMMPS_NS::FixGearQuat::(initial_integrate|final_integrate|
 #: work of the fix for output, before the first step, and once per step for any number of bodies
 FIX = re.compile(r"LAMMPS_NS::(FixGearQuat|GearQuat::Step)::")
 ASIDE = re.compile(
-    r"FixGearQuat::show_bodies\(|GearQuat::Step::start\(|Comm\w+::forward_comm\(int\)"
+    r"FixGearQuat::show_bodies\(|GearQuat::Step::start\(|GearQuat::Start::|Comm\w+::forward_comm\(int\)"
     r"|GearQuat::OtherFixes::(watch|take)_\w+\("
 )
 ADDRESS = re.compile("0x[0-9a-f]+")

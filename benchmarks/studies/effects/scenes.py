@@ -39,9 +39,9 @@ run {steps}
 """
 
 _FORCES = {
-    "none": "pair_style zero 5.0\npair_coeff * *",
-    "neutral": "pair_style lj/cut 5.0\npair_coeff * * 0.005 2.0",
-    "charged": "pair_style lj/cut/coul/cut 5.0\npair_coeff * * 0.005 2.0",
+    "none": "pair_style zero 6.0\npair_coeff * *",
+    "neutral": "pair_style lj/cut 6.0\npair_coeff * * 0.005 2.0",
+    "charged": "pair_style lj/cut/coul/cut 6.0\npair_coeff * * 0.005 2.0",
 }
 
 
