@@ -47,8 +47,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
          }),
     driven_box(lmp, this, args, bodies, ownership, sites, other_fixes, step),
     minimization(lmp, bodies, ownership, sites), restarts(lmp, this, bodies, ownership, step),
-    respa(lmp), table(lmp, bodies, sites), sums(lmp, bodies),
-    extracts(lmp, bodies, ownership, sums, args.mol)
+    respa(lmp), outputs(lmp, bodies, ownership, sites, args.mol)
 {
   time_integrate = rigid_flag = 1;
   scalar_flag = vector_flag = array_flag = local_flag = 1;
@@ -57,7 +56,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   extvector = -1;
   extarray = 0;
   size_array_rows = 0;
-  size_array_cols = size_local_cols = BodyTable::COLUMNS;
+  size_array_cols = size_local_cols = Outputs::COLUMNS;
   energy_global_flag = virial_global_flag = virial_peratom_flag = 1;
   centroidstressflag = CENTROID_AVAIL;
   thermo_virial = 1;
@@ -76,7 +75,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   maxexchange = ownership.max_exchange();
   comm_forward = ownership.max_forward();
   comm_reverse = Ownership::MOST_NUMBERS;
-  size_vector = Sums::ELEMENTS + step.elements();
+  size_vector = Outputs::ELEMENTS + step.elements();
 
   if (group->dynamic[igroup])
     error->all(
@@ -95,7 +94,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
 
   // callbacks last, because LAMMPS would call a fix whose constructor has failed
   extlist = new int[size_vector]{1, 1};
-  for (int n = 0; n < step.elements(); ++n) extlist[Sums::ELEMENTS + n] = step.extensive(n);
+  for (int n = 0; n < step.elements(); ++n) extlist[Outputs::ELEMENTS + n] = step.extensive(n);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
   if (comm->me == 0)
@@ -230,7 +229,7 @@ void FixGearQuat::count_rows()
 /// LAMMPS does not call a function to request local data.
 void FixGearQuat::show_bodies()
 {
-  array_local = table.local();
+  array_local = outputs.local();
   size_local_rows = bodies.nowned();
 }
 
@@ -309,17 +308,10 @@ void FixGearQuat::min_setup(int vflag)
 {
   step.forget("Fix gear/quat: minimize moves the bodies; histories are rebuilt");
   ownership.spread_states();
-  minimization.measure();
   min_post_force(vflag);
-  minimization.check_loads();
+  minimization.begin();
   minimization.project(atom->f);
   min_projected = true;
-}
-
-void FixGearQuat::min_pre_neighbor()
-{
-  pre_neighbor();
-  minimization.measure();
 }
 
 /// Fix box/relax may request the pressure next.
@@ -394,8 +386,8 @@ double FixGearQuat::compute_vector(int n)
                "Fix gear/quat {}: output reads element {} of a vector of {}; the fix has other "
                "keywords than when the output was defined: define it anew",
                id, n + 1, size_vector);
-  if (n >= Sums::ELEMENTS) return step.element(n - Sums::ELEMENTS);
-  return sums.element(n, step.present_integrator());
+  if (n >= Outputs::ELEMENTS) return step.element(n - Outputs::ELEMENTS);
+  return outputs.element(n, step.present_integrator());
 }
 
 /// The command velocity create gives every atom its own velocity, of which bodies adopt the rigid
@@ -436,7 +428,7 @@ int FixGearQuat::modify_param(int narg, char **arg)
 
 double FixGearQuat::memory_usage()
 {
-  return ownership.memory_usage() + sites.memory_usage() + table.memory_usage() +
+  return ownership.memory_usage() + sites.memory_usage() + outputs.memory_usage() +
       respa.memory_usage();
 }
 

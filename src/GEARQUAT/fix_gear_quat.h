@@ -58,7 +58,7 @@ class FixGearQuat : public Fix {
 
   void min_setup(int) override;
   void min_pre_exchange() override { minimization.fit(); }
-  void min_pre_neighbor() override;
+  void min_pre_neighbor() override { pre_neighbor(); }
   void min_pre_force(int) override { minimization.fit_all(); }
   void min_post_force(int) override;
   double min_energy(double *) override;
@@ -68,9 +68,9 @@ class FixGearQuat : public Fix {
   int min_dof() override { return 1; }
   double max_alpha(double *) override { return HUGE_VAL; }
 
-  double compute_scalar() override { return sums.energy_correction() + step.energy(); }
+  double compute_scalar() override { return outputs.energy_correction() + step.energy(); }
   double compute_vector(int) override;
-  double compute_array(int i, int j) override { return table.global(i, j); }
+  double compute_array(int i, int j) override { return outputs.global(i, j); }
   bigint dof(int) override;
   int modify_param(int, char **) override;
   double memory_usage() override;
@@ -108,7 +108,7 @@ class FixGearQuat : public Fix {
   int size_restart(int i) override { return restarts.size(i); }
   int maxsize_restart() override { return restarts.max_size(); }
   void write_restart_file(const char *) override;
-  void *extract(const char *name, int &dim) override { return extracts.extract(name, dim); }
+  void *extract(const char *name, int &dim) override { return outputs.extract(name, dim); }
 
  private:
   // each object depends only on objects before it
@@ -124,9 +124,7 @@ class FixGearQuat : public Fix {
   GearQuat::Minimization minimization;
   GearQuat::Restart restarts;
   GearQuat::RespaForces respa;
-  GearQuat::BodyTable table;
-  GearQuat::Sums sums;
-  GearQuat::Extract extracts;
+  GearQuat::Outputs outputs;
 
   std::vector<GearQuat::StatedMolecule> stated;    // one for each molecule of the template
 

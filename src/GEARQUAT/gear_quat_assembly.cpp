@@ -5,8 +5,8 @@
 
 #include "gear_quat_assembly.h"
 
+#include "gear_quat_box.h"
 #include "gear_quat_extended.h"
-#include "gear_quat_images.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_shapes.h"
 

@@ -62,7 +62,7 @@ Bath::Bath(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, c
     box(lmp, fix, bodies, sites, args.pressure, temperature), bodies(bodies),
     words(args.thermostat), thermostats(words.damp > 0.0 ? 1 + words.separate : 0),
     chains(thermostats, Chain(words.length)),
-    isokinetic(lmp, bodies, args.isokinetic, args.rescale), pending(bodies)
+    isokinetic(lmp, bodies, args.isokinetic, args.rescale)
 {
   if (box.moves() && args.pressure.length > 0) chains.emplace_back(args.pressure.length);
   set_scheme(scheme_of_bath(args.scheme));
@@ -330,7 +330,7 @@ void Bath::note_setting()
 
 void Bath::begin_passes(double h)
 {
-  pending.begin(bodies.nmoved());
+  pending.resize(bodies.nmoved());
   if (isokinetic.acts()) return;
   same_bodies = temperature.is_counted();
   temperature.aim(update->ntimestep);

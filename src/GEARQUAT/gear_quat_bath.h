@@ -116,7 +116,7 @@ class Bath : protected Pointers {
   void fields(Fields &v);
 
  private:
-  /// Elements of the fix's vector after the elements of Sums and Tolerance; with isokinetic:
+  /// Elements of the fix's vector after the elements of Outputs and Tolerance; with isokinetic:
   enum { HEAT, ALPHA_TRANSLATION, ALPHA_ROTATION, ELEMENTS_OF_ISOKINETIC };
   /// Otherwise, before those of a moving box:
   enum { ENERGY, T_TRANSLATION, T_ROTATION, TARGET, XI_TRANSLATION, XI_ROTATION, ELEMENTS };
@@ -145,7 +145,7 @@ class Bath : protected Pointers {
   double cold[2] = {};                    ///< time that the parts have been cold
   bool warned[2] = {};                    ///< of that
   std::string told;                       ///< last message of the degrees of freedom
-  Column<Integrator::Pending> pending;    ///< in correct()
+  std::vector<Integrator::Pending> pending;    ///< in correct()
 
   // the start: 2K, which drives a chain from the start to each node, and the rate of the heat
 

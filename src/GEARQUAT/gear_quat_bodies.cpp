@@ -30,7 +30,6 @@ void Bodies::set_scheme(const Scheme &other)
 
 void Bodies::resize(int nhere)
 {
-  ++nlayouts;
   for_columns(*this, ALL, [nhere](auto &column, int width) {
     column.resize((size_t) nhere * width);
   });
@@ -47,7 +46,6 @@ void Bodies::remove_owned(int ibody)
 
 void Bodies::permute(const std::vector<int> &from)
 {
-  ++nlayouts;
   for_columns(*this, MOVING, [&from](auto &column, int width) {
     const auto before = column;
     for (size_t n = 0; n < from.size(); ++n)

@@ -25,7 +25,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
@@ -73,8 +72,6 @@ class Bodies {
   bigint number() const { return nbodies; }
   /// The number of insertions and removals, the same on all ranks.
   int changes() const { return nchanges; }
-  /// Changes whenever an index may belong to another body than before; see Column.
-  unsigned layout() const { return nlayouts; }
 
   // bodies that this rank moves, by the work in a step; large bodies last and in the same order on
   // all ranks; valid until atoms are exchanged
@@ -176,7 +173,6 @@ class Bodies {
   int nown = 0, nmove = 0;
   bigint nbodies = 0;
   int nchanges = 0;    ///< of nbodies, insertions and removals
-  unsigned nlayouts = 0;
 
   std::vector<Body> body;
   std::vector<BodyState> state;
@@ -198,47 +194,6 @@ class Bodies {
   }
   void resize(int nhere);
   void list_bodies();
-};
-
-/// Scratch with an element for each body, outside of the store.  It does not follow bodies to other
-/// indices or ranks, so a use after such a change ends LAMMPS.
-template <class T> class Column {
- public:
-  explicit Column(const Bodies &bodies) : bodies(&bodies) {}
-
-  /// n elements for the present bodies; elements of an earlier use may keep their values.
-  void begin(int n)
-  {
-    values.resize(n);
-    layout = bodies->layout();
-  }
-  T &operator[](int ibody)
-  {
-    check();
-    return values[ibody];
-  }
-  const T &operator[](int ibody) const
-  {
-    check();
-    return values[ibody];
-  }
-  /// All elements.
-  std::vector<T> &all()
-  {
-    check();
-    return values;
-  }
-
- private:
-  const Bodies *bodies;
-  unsigned layout = 0;
-  std::vector<T> values;
-
-  void check() const
-  {
-    if (layout != bodies->layout())
-      throw std::logic_error("fix gear/quat: data of bodies were used after their indices changed");
-  }
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -6,8 +6,8 @@
 #include "gear_quat_checks.h"
 
 #include "gear_quat_arguments.h"
+#include "gear_quat_box.h"
 #include "gear_quat_forces.h"
-#include "gear_quat_images.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_sites.h"

@@ -32,30 +32,21 @@ void Minimization::init()
   fitted = false;
 }
 
-void Minimization::measure()
+void Minimization::begin()
 {
-  moments.begin(bodies.nhere());
-  std::fill(moments.all().begin(), moments.all().end(), ArmSums());
+  std::vector<ArmSums> sums(bodies.nhere());
   for (const Site &site : sites) {
     const double *d = site.arm_body;
-    add3(d, moments[site.body].arm);
-    for (int n = 0; n < 9; ++n) moments[site.body].products[n] += d[n / 3] * d[n % 3];
+    add3(d, sums[site.body].arm);
+    for (int n = 0; n < 9; ++n) sums[site.body].products[n] += d[n / 3] * d[n % 3];
   }
-  ownership.sum(moments.all());
-}
-
-void Minimization::check_loads()
-{
+  ownership.sum(sums);
   tagint bad = 0;
-  bigint idle = 0;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    stored(ibody).arms = sums[ibody];
     const Load load = bodies.acting(ibody);
-    const double size = length(load.force) + length(load.torque_space);
-    if (!std::isfinite(size)) bad = bodies.body_at(ibody).id;
-    if (ownership.extended().sites.empty()) continue;
-    Mask none = 0;
-    nearest_twist(arms_of(ibody), bodies.body_at(ibody).off, load, &none);
-    idle += none != 0 && length(load.torque_space) > 0.0;
+    if (!std::isfinite(length(load.force) + length(load.torque_space)))
+      bad = bodies.body_at(ibody).id;
   }
   bad = over_ranks(MPI_MAX, bad, world);
   if (bad)
@@ -63,13 +54,6 @@ void Minimization::check_loads()
                "Fix gear/quat: the force or torque on body {} is not a number, so it cannot be "
                "minimized; atoms must not be in the same place (see delete_atoms overlap)",
                bad);
-  idle = over_ranks(MPI_SUM, idle, world);
-  if (idle && !warned && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: minimize does not turn {} linear bodies about their axes, "
-                   "although their atoms have orientations of their own",
-                   idle);
-  warned = true;
 }
 
 void Minimization::fit()
@@ -131,15 +115,12 @@ void Minimization::project(double **f)
   }
 }
 
-/* ----------------------------------------------------------------------
-   starting point of a line search
-------------------------------------------------------------------------- */
-
 void Minimization::store()
 {
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     const BodyState &s = bodies.state_of(ibody);
-    std::copy_n(s.q, 4, std::copy_n(s.center, 3, stored(ibody)));
+    std::copy_n(s.center, 3, stored(ibody).center);
+    std::copy_n(s.q, 4, stored(ibody).q);
   }
 }
 
@@ -147,8 +128,8 @@ void Minimization::put_back()
 {
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     BodyState &s = bodies.change_state(ibody);
-    std::copy_n(stored(ibody), 3, s.center);
-    std::copy_n(stored(ibody) + 3, 4, s.q);
+    std::copy_n(stored(ibody).center, 3, s.center);
+    std::copy_n(stored(ibody).q, 4, s.q);
     bodies.update_frame(ibody);
   }
 }

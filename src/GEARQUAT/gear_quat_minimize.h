@@ -27,17 +27,15 @@ namespace LAMMPS_NS::GearQuat {
 class Minimization : protected Pointers {
  public:
   Minimization(LAMMPS *lmp, Bodies &bodies, Ownership &ownership, Sites &sites) :
-      Pointers(lmp), bodies(bodies), ownership(ownership), sites(sites), moments(bodies)
+      Pointers(lmp), bodies(bodies), ownership(ownership), sites(sites)
   {
   }
 
   /// Ends the run if the minimizer cannot move bodies.
   void init();
-  /// Called when bodies were made or atoms exchanged.  Collective.
-  void measure();
-  /// Loads are present.  Ends the run on all ranks if one is not finite; warns of rotations that
-  /// move no atom.  Collective.
-  void check_loads();
+  /// Called before a minimization, when poses and loads are present.  Ends the run on all ranks if a
+  /// load is not finite.  Collective.
+  void begin();
   /// Moves bodies to their atoms, and atoms to their positions, except ghosts.  Collective.
   void fit();
   /// Moves bodies, atoms and ghosts before forces are evaluated, unless fit() was called after the
@@ -46,8 +44,7 @@ class Minimization : protected Pointers {
   /// Projects the forces f on atoms of bodies onto rigid motions.  Collective.
   void project(double **f);
 
-  // Starting point of a line search, stored in the memory of histories, which a minimization does
-  // not need.
+  // Starting point of a line search.
 
   void store();
   void put_back();
@@ -56,15 +53,21 @@ class Minimization : protected Pointers {
   Bodies &bodies;
   Ownership &ownership;
   Sites &sites;
-  bool fitted = false, warned = false;
-  Column<ArmSums> moments;    ///< of all bodies here, along their axes
+  bool fitted = false;
 
-  Arms arms_of(int ibody) const
+  /// In the memory of the history of a body, which a minimization does not need, and which travels
+  /// with the body.
+  struct Stored {
+    double center[3], q[4];    ///< starting point of a line search
+    ArmSums arms;              ///< along the axes of the body
+  };
+  static_assert(sizeof(Stored) <= VERLET * Scheme::SECOND_WIDTH * sizeof(double));
+  Stored &stored(int ibody) { return *reinterpret_cast<Stored *>(bodies.history(ibody)); }
+  Arms arms_of(int ibody)
   {
-    const Arms along_axes = {(double) bodies.body_at(ibody).natoms, moments[ibody]};
+    const Arms along_axes = {(double) bodies.body_at(ibody).natoms, stored(ibody).arms};
     return along_axes.in_space(bodies.axes(ibody));
   }
-  double *stored(int ibody) { return bodies.history(ibody); }
 };
 
 }    // namespace LAMMPS_NS::GearQuat

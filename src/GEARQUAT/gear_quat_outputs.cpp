@@ -5,6 +5,7 @@
 
 #include "gear_quat_outputs.h"
 
+#include "gear_quat_given_bodies.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -22,11 +23,19 @@ using namespace GearQuat;
 
 static constexpr double NORM_ROUNDING = 1.0e-15;
 
+Outputs::Outputs(LAMMPS *lmp, const Bodies &bodies, const Ownership &ownership, const Sites &sites,
+                 const std::string &template_id) :
+    Pointers(lmp),
+    bodies(bodies), ownership(ownership), sites(sites), template_id(template_id)
+{
+  find_template(lmp, template_id);    // it must exist
+}
+
 /* ----------------------------------------------------------------------
    scalar and vector
 ------------------------------------------------------------------------- */
 
-double Sums::energy_correction() const
+double Outputs::energy_correction() const
 {
   double here[2] = {0.0, 0.0};
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
@@ -41,7 +50,7 @@ double Sums::energy_correction() const
   return std::fabs(all[0]) < rounding ? 0.0 : all[0] / force->ftm2v;
 }
 
-double Sums::element(int n, const Integrator *integrator) const
+double Outputs::element(int n, const Integrator *integrator) const
 {
   const bool largest = n == NORM || n == RADIAL || n == MAX_POSITION || n == MAX_ANGLE;
   double here = 0.0;
@@ -72,25 +81,35 @@ double Sums::element(int n, const Integrator *integrator) const
    array and local data
 ------------------------------------------------------------------------- */
 
-double **BodyTable::local()
+std::vector<Outputs::Row> Outputs::owned_rows() const
 {
-  mine.resize(bodies.nowned());
-  rows.resize(bodies.nowned());
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    rows[ibody] = mine[ibody].data();
-    fill_row(ibody, rows[ibody]);
-  }
+  std::vector<Row> made(bodies.nowned());
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) fill_row(ibody, made[ibody].data());
+  return made;
+}
+
+double **Outputs::local()
+{
+  mine = owned_rows();
+  rows.clear();
+  for (Row &row : mine) rows.push_back(row.data());
   return rows.data();
 }
 
-double BodyTable::global(int row, int column)
+double Outputs::global(int row, int column)
 {
-  if (gathered != sites.placements()) gather_rows();
+  if (gathered != sites.placements()) {
+    std::vector<Row> here = owned_rows();
+    all = gather_sorted(here, world, [](const Row &a, const Row &b) {
+      return a[ID] < b[ID];
+    });
+    gathered = sites.placements();
+  }
   return row < (int) all.size() ? all[row][column] : 0.0;
 }
 
 /// A center in the box and its image flags, also if they exceed the range of integers.
-void BodyTable::wrap(const double *center, double *wrapped, double *image) const
+void Outputs::wrap(const double *center, double *wrapped, double *image) const
 {
   const int periodic[3] = {domain->xperiodic, domain->yperiodic, domain->zperiodic};
   const bool tilted = domain->triclinic;
@@ -105,17 +124,13 @@ void BodyTable::wrap(const double *center, double *wrapped, double *image) const
 }
 
 /// Quaternions have unit length, and the scalar first, as in LAMMPS.
-void BodyTable::fill_row(int ibody, double *row) const
+void Outputs::fill_row(int ibody, double *row) const
 {
   const Body &body = bodies.body_at(ibody);
   const BodyState &s = bodies.state_of(ibody);
   const Load &l = bodies.load_of(ibody);
 
-  double a[9], momentum_body[3];
   wrap(s.center, row + CENTER, row + IMAGE);
-  rotation_matrix(s.q, dot4(s.q, s.q), a);
-  for (int i = 0; i < 3; ++i) momentum_body[i] = body.rigid.inertia[i] * s.omega_body[i];
-
   std::copy_n(s.velocity, 3, row + VELOCITY);
   for (int i = 0; i < 3; ++i) {
     row[FORCE + i] = l.force[i] / force->ftm2v;
@@ -127,62 +142,32 @@ void BodyTable::fill_row(int ibody, double *row) const
   row[QUATERNION] = unit[3];
   std::copy_n(unit, 3, row + QUATERNION + 1);
   std::copy_n(s.omega_body, 3, row + OMEGA_BODY);
-  to_space(a, momentum_body, row + ANGULAR_MOMENTUM);
+  momentum_along_space(body.rigid, s, row + ANGULAR_MOMENTUM);
   row[POSITION_ERROR] = bodies.last_of(ibody).position_error();
   row[ANGLE_ERROR] = bodies.last_of(ibody).angle_error();
   row[ID] = double(body.id);
-}
-
-void BodyTable::gather_rows()
-{
-  std::vector<Row> rows_here(bodies.nowned());    // local() uses `mine`
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) fill_row(ibody, rows_here[ibody].data());
-  all = gather_sorted(rows_here, world, [](const Row &a, const Row &b) {
-    return a[ID] < b[ID];
-  });
-  gathered = sites.placements();
 }
 
 /* ----------------------------------------------------------------------
    data for other C++ code
 ------------------------------------------------------------------------- */
 
-void *Extract::extract(const std::string &name, int &dim)
+void *Outputs::extract(const std::string &name, int &dim)
 {
   dim = 0;
   nbody = bodies.nhere();
   if (name == "nbody") return &nbody;
   if (name == "onemol") return find_template(lmp, template_id);
-  if (name == "ke") {
-    ke = sums.element(Sums::KE_TRANSLATION, nullptr);
-    return &ke;
-  }
-  if (name == "erotational") {
-    erotational = sums.element(Sums::KE_ROTATION, nullptr);
-    return &erotational;
-  }
-
+  dim = 1;    // one element more avoids a null pointer without atoms
   if (name == "body") {
-    dim = 1;
-    body.assign(atom->nlocal + 1, -1);    // one more: avoids a null pointer without atoms
+    body.assign(atom->nlocal + 1, -1);
     for (int i = 0; i < atom->nlocal; ++i) body[i] = ownership.body_of(i);
     return body.data();
   }
   if (name == "masstotal") {
-    dim = 1;
     masstotal.resize(nbody + 1);
     for (int i = 0; i < nbody; ++i) masstotal[i] = bodies.rigid_of(i).mass;
     return masstotal.data();
-  }
-  if (name == "inertia") {
-    dim = 2;
-    inertia.resize(3 * (nbody + 1));
-    inertia_rows.resize(nbody + 1);
-    for (int i = 0; i < nbody; ++i) {
-      inertia_rows[i] = inertia.data() + 3 * i;
-      std::copy_n(bodies.rigid_of(i).inertia, 3, inertia_rows[i]);
-    }
-    return inertia_rows.data();
   }
   return nullptr;
 }

@@ -134,10 +134,10 @@ Line line_of(const Body &body, const BodyState &state, const double *row)
   Line line = {body.id, GivenBody()};
   GivenBody &written = line.body;
   written.mass = body.rigid.mass;
-  std::copy_n(row + BodyTable::CENTER, 3, written.center);
-  std::copy_n(row + BodyTable::VELOCITY, 3, written.velocity);
-  std::copy_n(row + BodyTable::ANGULAR_MOMENTUM, 3, written.angular_momentum_space);
-  std::copy_n(row + BodyTable::IMAGE, 3, written.image);
+  std::copy_n(row + Outputs::CENTER, 3, written.center);
+  std::copy_n(row + Outputs::VELOCITY, 3, written.velocity);
+  std::copy_n(row + Outputs::ANGULAR_MOMENTUM, 3, written.angular_momentum_space);
+  std::copy_n(row + Outputs::IMAGE, 3, written.image);
 
   // A^T I A, where the rows of A are the principal axes; xx yy zz xy xz yz
 

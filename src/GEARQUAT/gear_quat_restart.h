@@ -41,7 +41,7 @@ class Restart : protected Pointers {
 
   /// The text file beside a restart file: all bodies in the format of infile, sorted by ID, with
   /// all digits.  A write error ends the run.  The file is complete at any time: it is written
-  /// under another name and then renamed.  rows: of BodyTable, for this rank's owned bodies.
+  /// under another name and then renamed.  rows: of Outputs, for this rank's owned bodies.
   /// Collective.
   void write_bodies(const std::string &filename, double **rows) const;
 

@@ -5,7 +5,7 @@
 
 #include "gear_quat_sites.h"
 
-#include "gear_quat_images.h"
+#include "gear_quat_box.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"

@@ -26,8 +26,7 @@ Start::Start(LAMMPS *lmp, const std::vector<Step::Starter> &fixes, double h) :
 {
   for (const auto &one : fixes) {
     if (one.needed) one.step->bath.box.refer_to_box(h);
-    starters.push_back({*one.step, one.needed, one.step->bodies.snapshot(),
-                        Column<Collocation::Workspace>(one.step->bodies)});
+    starters.push_back({*one.step, one.needed, one.step->bodies.snapshot(), {}});
   }
 }
 
@@ -135,7 +134,7 @@ struct Start::Search {
       const Bodies &bodies = one.step.bodies;
       one.step.bath.measure();
       one.step.bath.begin_start(nodes());
-      one.work.begin(bodies.nmoved());
+      one.work.resize(bodies.nmoved());
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
         our.collocation.begin(bodies.rigid_of(ibody),
                               local_series(bodies.rigid_of(ibody), one.step.scaled(ibody),
@@ -147,7 +146,7 @@ struct Start::Search {
   void foretell()
   {
     for (auto &one : our.starters) {
-      for (auto &work : one.work.all()) our.collocation.foretell(work);
+      for (auto &work : one.work) our.collocation.foretell(work);
       one.step.bath.foretell(nodes());
     }
   }
@@ -161,7 +160,7 @@ struct Start::Search {
         return false;
       }
     for (auto &one : our.starters) {
-      for (auto &work : one.work.all()) our.collocation.settle(pair, work);
+      for (auto &work : one.work) our.collocation.settle(pair, work);
       one.step.bath.settle(nodes(), pair);
     }
     change = over_ranks(MPI_MAX, here, our.world);

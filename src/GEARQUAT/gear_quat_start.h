@@ -37,7 +37,7 @@ class Start : protected Pointers {
     Step &step;
     bool needed;
     Bodies::Snapshot before;
-    Column<Collocation::Workspace> work;
+    std::vector<Collocation::Workspace> work;
   };
   std::vector<Starter> starters;
   double h;

@@ -116,7 +116,7 @@ class Step : protected Pointers {
   /// Loads of bodies from the forces on atoms that LAMMPS has just evaluated.
   void gather(double **f, double **torque);
 
-  // elements of the fix's vector after the elements of Sums
+  // elements of the fix's vector after the elements of Outputs
 
   int elements() const { return of_tolerance() + (bath.elements()); }
   double element(int n);

@@ -84,7 +84,7 @@ Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const St
     Pointers(lmp),
     fix(fix), bodies(bodies), time_step(time_step),
     present(RememberedLoads::scheme(scheme.compensate)), control(control), every_time(every_time),
-    remembered(scheme.compensate), predicted(bodies), failed()
+    remembered(scheme.compensate), failed()
 {
   if (control.energy) this->control.eps /= force->mvv2e;
 }
@@ -277,7 +277,7 @@ void Tolerance::include(StepErrors one)
 
 void Tolerance::note_prediction()
 {
-  predicted.begin(bodies.nmoved());
+  predicted.resize(bodies.nmoved());
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
     predicted[ibody] = RememberedLoads::accelerations(bodies.history(ibody));
 }

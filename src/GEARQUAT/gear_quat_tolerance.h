@@ -78,7 +78,7 @@ class TimeStep : protected Pointers {
 
 class Tolerance : protected Pointers {
  public:
-  /// Elements of the fix's vector, after the elements of Sums, as listed in the manual.
+  /// Elements of the fix's vector, after the elements of Outputs, as listed in the manual.
   static constexpr int ELEMENTS = 10;
 
   /// Sums for the outputs.
@@ -153,7 +153,7 @@ class Tolerance : protected Pointers {
   Growth growing;
   std::unique_ptr<Forces> forces;            ///< null if no step of the run can be repeated
   std::string told;                          ///< the last reported reason for that
-  Column<RememberedLoads::Row> predicted;    ///< accelerations of bodies corrected together
+  std::vector<RememberedLoads::Row> predicted;    ///< accelerations of bodies corrected together
   StepErrors errors;           ///< of the bodies corrected so far; of all, once judged
   double speed = 0.0;          ///< upper limit of the speeds of all sites
   double begun_with = 0.0;     ///< length of the first try of the present step

@@ -24,23 +24,18 @@ class ExtractTest : public Command {
     fix = modify->get_fix_by_id(arg[0]);
     const auto *body = (const int *) get("body", 1);
     const auto *mass = (const double *) get("masstotal", 1);
-    const auto *inertia = (const double *const *) get("inertia", 2);
     const int nbody = *(const int *) get("nbody", 0);
-    const double ke = *(const double *) get("ke", 0);
-    const double erotational = *(const double *) get("erotational", 0);
 
-    // atoms in bodies, of sensible numbers; masses and moments of the bodies of all these atoms; bodies
-    // that ranks know
+    // atoms in bodies, of sensible numbers; masses of the bodies of all these atoms; bodies that ranks know
 
-    double here[7] = {0, 0, 0, 0, 0, 0, double(nbody)}, all[7];
+    double here[4] = {0, 0, 0, double(nbody)}, all[4];
     for (int i = 0; i < atom->nlocal; ++i) {
       if (body[i] < 0) continue;
       here[0] += 1.0;
       if (body[i] < nbody) here[1] += 1.0;
       here[2] += mass[body[i]];
-      for (int k = 0; k < 3; ++k) here[3 + k] += inertia[body[i]][k];
     }
-    MPI_Allreduce(here, all, 7, MPI_DOUBLE, MPI_SUM, world);
+    MPI_Allreduce(here, all, 4, MPI_DOUBLE, MPI_SUM, world);
 
     Molecule **molecules = nullptr;
     if (strcmp(arg[1], "NULL") != 0) molecules = &atom->molecules[atom->find_molecule(arg[1])];
@@ -48,9 +43,7 @@ class ExtractTest : public Command {
     int dim;
     const int unknown = fix->extract("nonsense", dim) == nullptr;
     if (comm->me == 0)
-      utils::logmesg(lmp, "extracted {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {} {} {}\n",
-                     all[0], all[1], all[2], all[3], all[4], all[5], ke, erotational, same, unknown,
-                     all[6]);
+      utils::logmesg(lmp, "extracted {} {} {:.17g} {} {} {}\n", all[0], all[1], all[2], same, unknown, all[3]);
   }
 
  private:

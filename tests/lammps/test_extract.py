@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scenes import SPCE, WATER_MASSES, WATER_SITES, water, water_data
+from scenes import SPCE, WATER_MASSES, water, water_data
 
 from running import ROOT, tree_source
 
@@ -23,31 +23,20 @@ def command() -> Path:
     return library
 
 
-def moments():
-    square = np.einsum("i,ij,ik->jk", WATER_MASSES, WATER_SITES, WATER_SITES)
-    return np.sort(np.linalg.eigvalsh(np.trace(square) * np.eye(3) - square))[::-1]
-
-
 @pytest.mark.parametrize("mol", ["", "mol spce"])
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_what_is_extracted(lmp_tree, command, ranks, mol):
     data = water_data(lmp_tree.folder / "data.water")
     (lmp_tree.folder / "molecule.spce").write_text(SPCE)
-    run = (
-        "thermo_style custom step f_move[1] f_move[2]\nthermo_modify norm no format float %.17g\n"
-        f"run 7\nplugin load {command}\nextract_test move {'spce' if mol else 'NULL'}"
-    )
+    run = f"run 7\nplugin load {command}\nextract_test move {'spce' if mol else 'NULL'}"
     before = "molecule spce molecule.spce"
     fix = f"gear/quat molecule {mol}"
     result = lmp_tree.succeed(water(data, fix, dt=1.0, before=before, run=run), ranks=ranks)
     line = next(line for line in result.log.splitlines() if line.startswith("extracted"))
     *found, _ = (float(word) for word in line.split()[1:])
-    thermo = result.thermo[-1]
-    right = [3 * N, 3 * N, 3 * N * WATER_MASSES.sum(), *(3 * N * moments())]
-    right += [thermo["f_move[1]"][-1], thermo["f_move[2]"][-1], 1, 1]
+    right = [3 * N, 3 * N, 3 * N * WATER_MASSES.sum(), 1, 1]
     assert found == pytest.approx(right, rel=1e-9)
-    assert found[6] == pytest.approx(right[6], rel=1e-13) and found[6] > 0.1
-    assert 1.01 * np.array(found[:8]) != pytest.approx(right[:8], rel=1e-3)
+    assert 1.01 * np.array(found[:3]) != pytest.approx(right[:3], rel=1e-3)
 
 
 @pytest.mark.parametrize("ranks", [2, 4])
