@@ -121,7 +121,8 @@ int FixGearQuat::setmask()
   show_bodies();    // local data may be requested before the first run
   return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR |
       INITIAL_INTEGRATE_RESPA | FINAL_INTEGRATE_RESPA | (step.tolerance ? END_OF_STEP : 0) |
-      MIN_PRE_EXCHANGE | MIN_PRE_NEIGHBOR | MIN_PRE_FORCE | MIN_POST_FORCE | MIN_ENERGY;
+      (step.bath.box.moves() ? POST_FORCE : 0) | MIN_PRE_EXCHANGE | MIN_PRE_NEIGHBOR |
+      MIN_PRE_FORCE | MIN_POST_FORCE | MIN_ENERGY;
 }
 
 /* ----------------------------------------------------------------------
@@ -209,9 +210,10 @@ void FixGearQuat::setup(int vflag)
   const bool first = !step.had_run();
   ownership.spread_states();
   if (first) other_fixes.warn_of_gravity();
-  step.gather(atom->f, atom->torque);
+  sites.gather_loads(atom->f, atom->torque);
   driven_box.follow();
   step.begin_run();
+  step.bath.box.measure_virial(atom->f);
   sites.place_velocities();
   bodies.forget_work();    // positions belong to the corrected poses
   tally_virial(vflag, atom->f);
@@ -265,6 +267,12 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
   driven_box.follow();
   sites.advance_densities(update->dt);
   step.begin(vflag, f);
+}
+
+/// vflag is 0 where forces of other fixes are evaluated alone.
+void FixGearQuat::post_force(int vflag)
+{
+  if (vflag) step.bath.box.measure_virial(atom->f);
 }
 
 void FixGearQuat::end_step(double **f, double **torque)

@@ -47,6 +47,7 @@ class FixGearQuat : public Fix {
   void setup(int) override;
   void pre_exchange() override;
   void pre_neighbor() override;
+  void post_force(int) override;    ///< with a pressure only
   void initial_integrate(int) override;
   void final_integrate() override;
   void initial_integrate_respa(int, int, int) override;

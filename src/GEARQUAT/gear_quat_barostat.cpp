@@ -9,6 +9,7 @@
 #include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -53,8 +54,8 @@ static constexpr double ROUNDING = 1.0e-12;
 Barostat::Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sites,
                    const PressureWords &pressure, Temperature &temperature) :
     Pointers(lmp),
-    fix(fix), bodies(bodies), asked(pressure), is_asked(asked.any()), temperature(temperature),
-    box(lmp, pressure.fixed)
+    fix(fix), bodies(bodies), sites(sites), asked(pressure), is_asked(asked.any()),
+    temperature(temperature), box(lmp, pressure.fixed)
 {
   if (moves()) virial.emplace(lmp, fix, sites);
 }
@@ -204,12 +205,27 @@ void Barostat::note_rates(double h)
   if (h != 0.0) rate = cell.rate(h);
 }
 
+/// LAMMPS' box becomes the present one.
+void Barostat::show_box(bool forces)
+{
+  std::vector<double *> others;
+  if (sites.number() < atom->nlocal) {
+    std::vector<bool> in_body(atom->nlocal, false);
+    for (const Site &site : sites) in_body[site.atom] = true;
+    for (int i = 0; i < atom->nlocal; ++i)
+      if (!in_body[i]) others.push_back(atom->x[i]);
+  }
+  for (double *x : others) domain->x2lamda(x, x);
+  box.show(forces);
+  for (double *x : others) domain->lamda2x(x, x);
+}
+
 /// LAMMPS' box becomes this one, and states, which are scaled, become unscaled.
 void Barostat::show(const Upper &deformation, const Upper &its_rate)
 {
   rate = its_rate;
   box.set(deformation);
-  box.show(true);
+  show_box(true);
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) box.to_space(bodies.change_state(ibody));
 }
 
@@ -298,7 +314,7 @@ void Barostat::place(const double *force, const double *predicted, BodyState &st
 void Barostat::end_step()
 {
   if (!moves()) return;
-  box.show(false);
+  show_box(false);
   virial->request(update->ntimestep + 1);
 }
 
@@ -359,27 +375,39 @@ double Barostat::element(int n) const
    before a run
 ------------------------------------------------------------------------- */
 
-/// Refuses atoms outside of bodies.
+/// Refuses atoms outside of bodies that move by themselves.
 void Barostat::refuse_others() const
 {
-  const bigint others = temperature.atoms_outside();
+  std::string movers;
+  bigint here = 0;
+  int bits = 0;
+  for (const auto *other : modify->get_fix_list()) {
+    if (other == fix || !other->time_integrate) continue;
+    bits |= other->groupbit;
+    movers += (movers.empty() ? "" : ", ") + name_of(other);
+  }
+  for (int i = 0; i < atom->nlocal; ++i) here += (atom->mask[i] & bits) != 0;
+  for (const Site &site : sites) here -= (atom->mask[site.atom] & bits) != 0;
+  const bigint others = over_ranks(MPI_SUM, here, world);
   if (others == 0) return;
   tagint last = 0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     last = std::max(last, bodies.body_at(ibody).id);
   const double number = std::pow(10.0, std::ceil(std::log10(over_ranks(MPI_MAX, last, world) + 1)));
-  error->all(FLERR,
-             "Fix gear/quat: constant pressure requires all atoms to be in bodies of this fix, and "
-             "{3} are not: their places would not follow the box; make each of them a body of its "
-             "own with \"variable b atom '({0})*({1})+(1-({0}))*({2:.0f}+id)'\" and with \"custom "
-             "v_b\" for a group of all atoms, and let no other fix move them",
-             asked.in_bodies, asked.bodies, number, others);
+  error->all(
+      FLERR,
+      "Fix gear/quat: constant pressure requires all moving atoms to be in bodies of this "
+      "fix, and {3} that {4} moves are not: their places would not follow the box; make each "
+      "of them a body of its own with \"variable b atom "
+      "'({0})*({1})+(1-({0}))*({2:.0f}+id)'\" and with \"custom v_b\" for a group of all "
+      "atoms, and let no other fix move them",
+      asked.in_bodies, asked.bodies, number, others, movers);
 }
 
 void Barostat::refuse_scene() const
 {
   if (!moves()) return;
-  virial->check_compute();
+  virial->refuse_scene();
   refuse_others();
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR,
@@ -391,12 +419,6 @@ void Barostat::refuse_scene() const
     error->all(FLERR,
                "Fix gear/quat: shear components of the pressure require atoms that are "
                "points: torques on atoms make the virial of LAMMPS unsymmetric");
-  if (const Fix *other = fix_with_forces(lmp, fix))
-    error->all(
-        FLERR,
-        "Fix gear/quat: constant pressure cannot be used with fix {} ({}), which may change "
-        "forces: what they add to the pressure is not known; leave it out, or keep the volume",
-        other->id, other->style);
   if (asked.shears() && asked.flip && !box.can_flip() && comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: this build replaces no tilted box on several ranks (keyword "
@@ -523,7 +545,7 @@ void Barostat::leave_nodes()
   if (!moves()) return;
   time_of_node = 0.0;
   note_rates(width);
-  box.show(true);
+  show_box(true);
 }
 
 void Barostat::seed(const StartNodes &nodes, int pairs)

@@ -19,7 +19,8 @@
      S' = V sum (P_ab - P delta_ab) G_ab - V P' - sum (W'/2) G_ab^2,   P = sum P_aa/d
 
    is constant.  The box (gear_quat_box.h) moves as the bodies do: a step predicts the box, LAMMPS
-   evaluates the forces in the predicted box, and every pass of the corrector corrects the box.
+   evaluates the forces in the predicted box, and every pass of the corrector corrects the box.  Atoms
+   in no body, which do not move by themselves, keep their places relative to the box.
 
    Without these keywords moves() is false: functions do nothing, and centers are not scaled. */
 
@@ -80,7 +81,7 @@ class Barostat : protected Pointers {
   void predict(double h);
   /// With a changing step, scalars have the coefficients of velocities.
   void choose_coefficients(CorrectorCoefficients::Array &c, int values) const;
-  /// The loads are from the forces f on atoms, which LAMMPS has just evaluated.  Collective.
+  /// From the forces f on atoms, in post_force() of the fix.  Collective.
   void measure_virial(double **f);
   /// False if in the present step LAMMPS needs the virial of the constraint forces only for this.
   bool others_ask_for_virial() const;
@@ -175,6 +176,7 @@ class Barostat : protected Pointers {
  private:
   const Fix *fix;
   Bodies &bodies;
+  const Sites &sites;
   PressureWords asked;
   const bool is_asked;
   Temperature &temperature;
@@ -231,6 +233,7 @@ class Barostat : protected Pointers {
   void combine(const Friction &alpha);
   void show(const Upper &deformation, const Upper &its_rate);
 
+  void show_box(bool forces);
   void refuse_others() const;
   void refuse_box(const Upper &matrix) const;
   void refuse_narrow_box(int direction, double edge) const;

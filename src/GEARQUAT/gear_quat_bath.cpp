@@ -223,11 +223,11 @@ void Bath::share_friction()
   std::copy_n(temperature.common, 3, of_all.common);
 }
 
-Friction Bath::friction_of(int ibody) const
+template <class Damper> Damper Bath::friction_of(int ibody, Damper found) const
 {
-  Friction found = of_all;
+  if (bodies.body_at(ibody).off == 0) return found;
   for (int k = 0; k < 3; ++k)
-    if (!temperature.has(ibody, TRANSLATION, k)) found.translation[k] = 0.0;
+    if (!temperature.has(ibody, TRANSLATION, k)) found.release(k);
   if (!temperature.has(ibody, ROTATION)) found.rotation = 0.0;
   return found;
 }
@@ -253,8 +253,9 @@ Load Bath::acting(int ibody) const
   const RigidBody &rigid = bodies.rigid_of(ibody);
   const BodyState &state = bodies.state_of(ibody);
   if (box.moves())
-    return damped_load(rigid, box.scaled(state), box.scaled(bodies.load_of(ibody)), box.friction());
-  return damped_load(rigid, state, bodies.acting(ibody), friction_of(ibody));
+    return damped_load(rigid, box.scaled(state), box.scaled(bodies.acting(ibody)),
+                       friction_of(ibody, box.friction()));
+  return damped_load(rigid, state, bodies.acting(ibody), friction_of(ibody, of_all));
 }
 
 /* ----------------------------------------------------------------------
@@ -292,12 +293,15 @@ void Bath::correct(const Integrator &integrator, int passes)
       const auto correct_pass = [&](const Load &load, const auto &friction) {
         integrator.correct_pass(rigid, load, friction, rows, pending[ibody]);
       };
-      if (box.moves())
+      const bool masked = bodies.body_at(ibody).off != 0;
+      if (box.moves() && masked)
+        correct_pass(box.scaled(bodies.acting(ibody)), friction_of(ibody, box.friction()));
+      else if (box.moves())
         correct_pass(box.scaled(bodies.load_of(ibody)), box.friction());
-      else if (bodies.body_at(ibody).off == 0)
-        correct_pass(bodies.load_of(ibody), of_all);
+      else if (masked)
+        correct_pass(bodies.acting(ibody), friction_of(ibody, of_all));
       else
-        correct_pass(bodies.acting(ibody), friction_of(ibody));
+        correct_pass(bodies.load_of(ibody), of_all);
       if (ibody >= bodies.nowned() || !sums) return;
       integrator.velocities_of_pass(rigid, rows, pending[ibody], velocity, omega_body);
       if (box.moves()) box.to_space(velocity);
@@ -311,9 +315,9 @@ void Bath::correct(const Integrator &integrator, int passes)
     double *rows = bodies.history(ibody);
     BodyState &state = bodies.change_state(ibody);
     Correction &last = bodies.change_last(ibody);
-    const bool masked = bodies.body_at(ibody).off != 0;
+    const bool masked = bodies.body_at(ibody).off != 0 && !box.moves();
     const BodyState before = masked ? state : BodyState();
-    last = integrator.finish(rigid, bodies.acting(ibody), rows, pending[ibody]);
+    last = integrator.finish(rigid, bodies.load_of(ibody), rows, pending[ibody]);
     isokinetic.scale(integrator, rigid, rows);
     integrator.body_state(rigid, rows, state, bodies.change_frame(ibody));
     if (box.moves()) box.place(bodies.load_of(ibody).force, pending[ibody].x, state, last);

@@ -161,7 +161,8 @@ class Bath : protected Pointers {
   void note_setting();
   void refuse_bodies() const;
   void tell_freedoms();
-  Friction friction_of(int ibody) const;
+  /// The friction of all bodies, without what does not act on this one.
+  template <class Damper> Damper friction_of(int ibody, Damper found) const;
   void sum_present();
   void note_friction();
   void settle_fresh(double h);

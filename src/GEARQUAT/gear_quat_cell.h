@@ -118,6 +118,9 @@ struct CellFriction {
     inverse.times(alpha.common, common);
   }
 
+  /// In a cell that does not shear, component i of a momentum in space does not change.
+  void release(int i) { damping[i] = drag[i]; }
+
   double force(int i, double met, const double *p, double mass) const
   {
     double own[3];

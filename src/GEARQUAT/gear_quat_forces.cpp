@@ -50,6 +50,9 @@ Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(l
   if (why.empty()) look_at_fixes(owners);
   if (why.empty()) look_at_variables();
   if (why.empty()) look_at_time();
+  post_force.clear();    // and those of the owners, in the order of LAMMPS
+  for (auto *fix : modify->get_fix_list())
+    if (modify->get_fix_mask(fix) & FixConst::POST_FORCE) post_force.push_back(fix);
 }
 
 void Forces::look_at_styles()

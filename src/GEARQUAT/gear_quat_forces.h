@@ -57,7 +57,7 @@ class Tallies : protected Pointers {
 
 class Forces : protected Pointers {
  public:
-  /// Examines the simulation.  owners: the calling fixes, which are not evaluated.  Collective.
+  /// Examines the simulation.  owners: the calling fixes.  Collective.
   Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners);
 
   /// Empty if forces can be followed, otherwise the reason.

@@ -98,6 +98,9 @@ struct Friction {
     for (double &one : translation) one = alpha.translation;
   }
 
+  /// Component i of a momentum does not change.
+  void release(int i) { translation[i] = 0.0; }
+
   // what acts on component i of a momentum p, or of an angular momentum l along the principal axes
 
   double force(int i, double met, const double *p, double mass) const

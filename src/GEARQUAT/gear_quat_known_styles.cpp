@@ -229,14 +229,14 @@ std::string GearQuat::name_of(const Fix *fix)
   return fmt::format("fix {} ({})", fix->id, fix->style);
 }
 
-const Fix *GearQuat::fix_with_forces(LAMMPS *lmp, const Fix *owner)
+std::vector<const Fix *> GearQuat::fixes_with_forces(LAMMPS *lmp, const Fix *owner)
 {
-  constexpr int ON_FORCES = POST_FORCE | PRE_REVERSE;
+  std::vector<const Fix *> found;
   for (auto *other : lmp->modify->get_fix_list())
-    if (other != owner && (lmp->modify->get_fix_mask(other) & ON_FORCES) &&
-        !known(THREADS | NO_FORCE, other))
-      return other;
-  return nullptr;
+    if (other != owner && (lmp->modify->get_fix_mask(other) & POST_FORCE) &&
+        !known(NO_FORCE, other))
+      found.push_back(other);
+  return found;
 }
 
 // where other fixes may read the velocities of predicted sites
@@ -298,7 +298,8 @@ std::vector<std::string> GearQuat::repeatable_forces(LAMMPS *lmp)
   if (force->bond)
     add(fmt::format("bond style {}", force->bond_style), !known_bond(UNREPEATABLE, force));
   for (auto *fix : lmp->modify->get_fix_list())
-    if (lmp->modify->get_fix_mask(fix) & POST_FORCE) add(name_of(fix), known(REPEATABLE, fix));
+    if (!fix->time_integrate && (lmp->modify->get_fix_mask(fix) & POST_FORCE))
+      add(name_of(fix), known(REPEATABLE, fix));
   return lines;
 }
 

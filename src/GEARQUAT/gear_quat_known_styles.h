@@ -81,8 +81,8 @@ bool is_unrepeatable(const std::string &variable);
 
 /// The name of a fix in messages: ID and style.
 std::string name_of(const Fix *fix);
-/// The first other fix that may exert forces on atoms, null for none.
-const Fix *fix_with_forces(LAMMPS *lmp, const Fix *owner);
+/// The other fixes that may exert forces on atoms, in the order in which LAMMPS calls them.
+std::vector<const Fix *> fixes_with_forces(LAMMPS *lmp, const Fix *owner);
 /// True if there may be forces: styles other than "zero", or fixes called around the forces.
 bool makes_forces(LAMMPS *lmp, const Fix *owner);
 /// The name of a style that reads velocities between prediction and correction, or empty.  owner:

@@ -193,11 +193,7 @@ struct Start::Search {
       }
       forces.evaluate(0, vflag);
       ++our.evaluations;
-      for (auto &one : our.starters) {
-        one.step.sites.gather_loads(our.atom->f, our.atom->torque);
-        one.step.bath.box.measure_virial(our.atom->f);
-        one.step.bath.box.leave_probe(side);
-      }
+      for (auto &one : our.starters) one.step.bath.box.leave_probe(side);
     }
   }
 
@@ -219,10 +215,7 @@ struct Start::Search {
     forces.evaluate(0, vflag);
     ++our.evaluations;
     for (auto &one : our.starters) one.step.sites.gather_loads(our.atom->f, our.atom->torque);
-    for (auto &one : our.starters) {
-      one.step.bath.box.measure_virial(our.atom->f);
-      one.step.bath.visit_node(nodes(), node);
-    }
+    for (auto &one : our.starters) one.step.bath.visit_node(nodes(), node);
     for (auto &one : our.starters)
       for (int ibody = 0; ibody < one.step.bodies.nmoved(); ++ibody) {
         const Body &body = one.step.bodies.body_at(ibody);
@@ -258,8 +251,8 @@ StartFound Start::search(Forces &forces)
         }))
       all.probe();
   }
-  forces.restore();
   all.put_back();
+  forces.restore();
   for (auto &one : starters) {
     one.step.ownership.spread_states();
     one.step.sites.place_extended();

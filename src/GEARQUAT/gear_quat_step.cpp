@@ -178,7 +178,7 @@ std::vector<Step::Starter> Step::start(double **f, double **torque)
   for (Step *one : fleet.members) {
     one->take_velocities(update->ntimestep - 1, true);
     one->ownership.spread_states();
-    one->gather(f, torque);
+    one->sites.gather_loads(f, torque);
   }
   // with keyword tolerance first, since it sets the step of all
   for (Step *one : fleet.members) {
@@ -613,7 +613,7 @@ void Step::end(double **f, double **torque)
   others.watch_places();
   phase = Phase::ENDED;
   for (;;) {
-    gather(f, torque);
+    sites.gather_loads(f, torque);
     // here, since the atoms are at the positions of the forces
     if (bath.box.others_ask_for_virial()) tally(vflag_of_step, f);
     correct(f);
@@ -627,12 +627,6 @@ void Step::end(double **f, double **torque)
   ownership.spread_moved();
   sites.place(true);
   if (reads_at_end(lmp, fix)) comm->forward_comm();    // ghosts are where forces were evaluated
-}
-
-void Step::gather(double **f, double **torque)
-{
-  sites.gather_loads(f, torque);
-  bath.box.measure_virial(f);
 }
 
 void Step::choose_next()

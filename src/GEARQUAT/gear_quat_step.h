@@ -113,8 +113,6 @@ class Step : protected Pointers {
   void end(double **f, double **torque);
   /// Chooses the next step; with keyword tolerance only.
   void choose_next();
-  /// Loads of bodies from the forces on atoms that LAMMPS has just evaluated.
-  void gather(double **f, double **torque);
 
   // elements of the fix's vector after the elements of Outputs
 

@@ -114,7 +114,8 @@ std::string Temperature::find_outside() const
 {
   const bigint others = atoms_outside();
   if (others > 0) return fmt::format("{} atoms are in no body of this fix", others);
-  if (const Fix *other = fix_with_forces(lmp, fix)) return name_of(other) + " may exert forces";
+  const auto with_forces = fixes_with_forces(lmp, fix);
+  if (!with_forces.empty()) return name_of(with_forces.front()) + " may exert forces";
   for (const auto *other : modify->get_fix_list())
     if (!insertions && known(Fact::EXCHANGE, other)) return name_of(other) + " may insert atoms";
   if (known_pair(Fact::BACKGROUND, lmp->force))
@@ -198,8 +199,7 @@ void Temperature::add(int ibody, const double *velocity, const double *omega_bod
   if (!masked || has(ibody, ROTATION))
     sums[ROTATION].add(2.0 * rotational_energy(rigid, omega_body), energies);
   for (int k = 0; of_pressure && k < Upper::SIZE; ++k)
-    sums[TENSOR + k].add(rigid.mass * velocity[Upper::ROW[k]] * velocity[Upper::COLUMN[k]],
-                         energies);
+    sums[TENSOR + k].add(rigid.mass * along[Upper::ROW[k]] * along[Upper::COLUMN[k]], energies);
   for (int k = 0; k < 3; ++k)
     if (constant[k]) sums[MOMENTUM + k].add(rigid.mass * along[k], momenta);
 }

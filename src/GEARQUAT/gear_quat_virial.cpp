@@ -5,6 +5,7 @@
 
 #include "gear_quat_virial.h"
 
+#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 
 #include "angle.h"
@@ -20,6 +21,8 @@
 #include "kspace.h"
 #include "modify.h"
 #include "pair.h"
+
+#include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -39,7 +42,7 @@ static constexpr int PLACES[] = {0, 1, 2, 5, 4, 3};
 /* ---------------------------------------------------------------------- */
 
 MolecularVirial::MolecularVirial(LAMMPS *lmp, const Fix *fix, const Sites &sites) :
-    Pointers(lmp), id(std::string(fix->id) + "_virial"), sites(sites)
+    Pointers(lmp), id(std::string(fix->id) + "_virial"), fix(fix), sites(sites)
 {
   modify->add_compute(id + " all pressure NULL pair bond angle dihedral improper kspace");
 }
@@ -54,14 +57,34 @@ Compute *MolecularVirial::own() const
   return modify->get_compute_by_id(id);
 }
 
-void MolecularVirial::check_compute() const
+static bool counts(const Fix *other)
 {
-  if (own() && own()->pressflag) return;
-  error->all(
-      FLERR,
-      "Fix gear/quat: compute {}, with which the fix asks LAMMPS for the virial, was deleted "
-      "or replaced; leave it, or define the fix again",
-      id);
+  return other->virial_global_flag && other->thermo_virial;
+}
+
+void MolecularVirial::refuse_scene() const
+{
+  if (!own() || !own()->pressflag)
+    error->all(
+        FLERR,
+        "Fix gear/quat: compute {}, with which the fix asks LAMMPS for the virial, was deleted "
+        "or replaced; leave it, or define the fix again",
+        id);
+  const auto &fixes = modify->get_fix_list();
+  const auto place_of = [&](const Fix *one) {
+    return std::find(fixes.begin(), fixes.end(), one);
+  };
+  for (const auto *other : fixes_with_forces(lmp, fix)) {
+    const bool before = place_of(other) < place_of(fix);
+    if (before == counts(other)) continue;
+    error->all(
+        FLERR,
+        "Fix gear/quat: with a pressure, {} has to be defined {} fix {}, because its force {} "
+        "(fix_modify virial {})",
+        name_of(other), before ? "after" : "before", fix->id,
+        before ? "does not count in the pressure" : "counts in the pressure",
+        before ? "no" : "yes");
+  }
 }
 
 void MolecularVirial::request(bigint step) const
@@ -103,6 +126,8 @@ void MolecularVirial::measure(double **f, double energy)
     add_virial(force->dihedral, styles);
     add_virial(force->improper, styles);
   }
+  for (int i = 0; modify->fix[i] != fix; ++i)
+    if (counts(modify->fix[i])) add_virial(modify->fix[i], styles);
   ExactSum of_arms[6];
   const double scale = LARGE * ExactSum::scale_of(energy);
   sites.add_arm_virial(f, of_arms, scale);

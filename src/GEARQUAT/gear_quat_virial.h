@@ -8,7 +8,11 @@
      W_ab = sum over pairs of F_a (R_ij)_b = V_ab - sum_i (f_i)_a (d_i)_b,      a <= b,
 
    where V is the virial of LAMMPS' styles for atoms, and f_i and d_i are force and arm of site i.
-   It needs no constraint forces.  LAMMPS computes V in the requested steps. */
+   It needs no constraint forces.  LAMMPS computes V in the requested steps.
+
+   As in LAMMPS, the force of another fix counts if the fix adds it to the virial (fix_modify virial
+   yes).  Fixes exert their forces in the order of their definition, so those whose forces count come
+   before this one, and all others after it: f_i are the forces of styles and of the fixes before. */
 
 #ifndef LMP_GEAR_QUAT_VIRIAL_H
 #define LMP_GEAR_QUAT_VIRIAL_H
@@ -31,12 +35,13 @@ class MolecularVirial : protected Pointers {
   MolecularVirial(LAMMPS *lmp, const Fix *fix, const Sites &sites);
   ~MolecularVirial() override;
 
-  /// Ends the run if the compute was deleted or replaced since the last run.
-  void check_compute() const;
+  /// Ends the run if the compute was deleted or replaced since the last run, or if the force of
+  /// another fix counts and acts later, or does not count and acts before.
+  void refuse_scene() const;
   /// LAMMPS will compute V in that step.
   void request(bigint step) const;
-  /// Computes it from V and the latest forces f on atoms.  energy: of all bodies, approximate.
-  /// Collective.
+  /// Computes it from V and the forces f on atoms, in post_force() of this fix.  energy: of all
+  /// bodies, approximate.  Collective.
   void measure(double **f, double energy);
   /// The virial in units of mass times velocity squared.
   const Upper &value() const { return virial; }
@@ -50,6 +55,7 @@ class MolecularVirial : protected Pointers {
 
  private:
   std::string id;
+  const Fix *fix;
   const Sites &sites;
   Upper virial;
 

@@ -29,14 +29,14 @@ TELLS = 0.05
 #: reasons why a deck is refused: message of the fix, name, and pattern of the manual
 REASONS = (
     (
-        r"constant pressure requires all atoms to be in bodies",
-        "pressure beside atoms in no body",
-        r"require all atoms to be in bodies of this fix",
+        r"constant pressure requires all moving atoms to be in bodies",
+        "pressure beside other moving atoms",
+        r"require all moving atoms to be in bodies of this fix",
     ),
     (
-        r"constant pressure cannot be used with (?:fix|run_style)",
-        "pressure beside other forces or r-RESPA",
-        r"Other fixes that may change forces",
+        r"constant pressure cannot be used with run_style|with a pressure, fix \S+ \(\S+\) has to be defined",
+        "pressure with r-RESPA, or another order of fixes",
+        r"run_style \*respa\* are refused with a pressure",
     ),
     (
         r"keyword langevin of the rigid fixes",

@@ -158,8 +158,7 @@ ARGUMENTS = {
     "molecule iso 1 1 1 flip maybe": "flip: unknown value maybe (yes or no)",
     "molecule iso 1 1 1 ptemp 0": "ptemp: 0 is not a positive number",
     "molecule iso 1 1 1 temp 1 1 0.1 ptemp 1": "keyword ptemp cannot be used with temp: the temperature of temp",
-    "molecule iso 1 1 1 force * on on off": "keyword iso cannot be used with force: with a moving box",
-    "molecule aniso 1 1 1 torque 1 off off off": "keyword aniso cannot be used with torque",
+    "molecule tri 1 1 1 force * on on off": "keyword force cannot be used with tri: in a box that shears",
     "molecule iso 1 1 1 mol some": "keyword iso cannot be used with mol: with a moving box",
     "molecule iso 1 2 1 tolerance 1e-8": "Pstart 1 and Pstop 2 differ, which cannot be used with tolerance",
     "molecule formulation first isokinetic total z 1 1 1": "keyword z cannot be used with isokinetic: constant kinetic energy",
@@ -315,7 +314,12 @@ def test_thermostats(lmp_tree, name, ranks):
 
 # fix and its keywords, before the fix, after it, message
 PRESSURES = {
-    "other atoms": ("group 1 one iso 1 1 1", "group one molecule 1", "", "requires all atoms to be in bodies of this fix, and 3 are not"),
+    "other atoms": (
+        "group 1 one iso 1 1 1",
+        "group one molecule 1\ngroup two molecule 2",
+        "fix second two nve",
+        "requires all moving atoms to be in bodies of this fix, and 3 that fix second (nve) moves are not",
+    ),
     "two fixes": (
         "group 1 one iso 1 1 1",
         "group one molecule 1\ngroup two molecule 2",
@@ -323,7 +327,18 @@ PRESSURES = {
         "fix move (gear/quat) changes the box without informing other fixes",
     ),
     "respa": ("molecule iso 1 1 1", "", "run_style respa 2 1 pair 1", "cannot be used with run_style respa; use run_style verlet"),
-    "a field": ("molecule iso 1 1 1", "", "fix a all addforce 0 0 1", "cannot be used with fix a (addforce), which may change forces"),
+    "a field before": (
+        "molecule iso 1 1 1",
+        "fix a all addforce 0 0 1",
+        "",
+        "fix a (addforce) has to be defined after fix move, because its force does not count",
+    ),
+    "a field that counts": (
+        "molecule iso 1 1 1",
+        "",
+        "fix a all addforce 0 0 1\nfix_modify a virial yes",
+        "fix a (addforce) has to be defined before fix move, because its force counts in the pressure",
+    ),
     "at rest": ("molecule iso 1 1 1", "velocity all set 0 0 0", "", "give them velocities first, or add keyword ptemp"),
     "one body": ("single iso 1 1 1", "", "", "constant pressure requires more than one body"),
     "extended": (
