@@ -17,7 +17,6 @@
 #include "force.h"
 #include "kspace.h"
 #include "modify.h"
-#include "neighbor.h"
 #include "update.h"
 #include "utils.h"
 
@@ -36,14 +35,6 @@ static constexpr double IN_A_STEP = 0.03;
 // over this many damping times
 
 static constexpr double FOLLOWED = 0.6, MEMORY = 2.0;
-
-// the mesh of long-range forces is made for edges that differ by less than this
-
-static constexpr double OF_MESH = 0.15;
-
-// limits for the change of the shape of the box under unequal targets
-
-static constexpr double IN_SHAPE = 4.0, OF_HEIGHT = 2.0;
 
 // targets that differ by less than this are equal up to rounding
 
@@ -452,16 +443,13 @@ void Barostat::begin_run(bool anew, double h)
   tell_freedoms();
   if (anew) refer_to_box(h);
   correction = Upper();    // forces are evaluated in the corrected box
-  std::copy_n(domain->prd, 3, begun_box.m.begin());
   double here = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     here = std::max(here, bodies.body_at(ibody).extent);
   longest_body = over_ranks(MPI_MAX, here, world);
   for (int k = 0; k < 3; ++k) refuse_narrow_box(k, domain->prd[k]);
-  begun_matrix = box.matrix();
   since = 0.0;
   strongest = Upper();
-  warned_mesh = false;
   virial->request(update->ntimestep + 1);
 }
 
@@ -491,7 +479,6 @@ void Barostat::refer_to_box(double h)
   width = h;
   box.refer();
   cell.begin(before, h);
-  begun_matrix = Upper::one();
   rate = before;
 }
 
@@ -573,40 +560,6 @@ void Barostat::seed_local(double h, int terms, double xi)
    an oscillation of the bodies
 ------------------------------------------------------------------------- */
 
-/// Strain for measuring the dependence of the pressure on the box at constant scaled centers:
-/// positions change by less than a tenth of the neighbor skin.
-double Barostat::probing_strain() const
-{
-  const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
-  return std::min(1.0e-3, 0.1 * neighbor->skin / longest);
-}
-
-void Barostat::enter_probe(int side)
-{
-  if (!moves()) return;
-  Upper strained = box.matrix();
-  for (int k = 0; k < 3; ++k)
-    if (asked.on[k]) strained[k] = 1.0 + side * probing_strain();
-  show(strained, rate);
-}
-
-void Barostat::leave_probe(int side)
-{
-  if (!moves()) return;
-  if (side < 0) {
-    drive_of_smaller = drive();
-    return;
-  }
-  const Upper change = drive() - drive_of_smaller;
-  double stiffest = 0.0;
-  for (int k = 0; k < 3; ++k)
-    if (asked.on[k]) stiffest = std::max(stiffest, -change[k] / (2.0 * probing_strain()));
-  probed = std::sqrt(stiffest);
-  against = along = 0.0;
-  last_drive = Upper();
-}
-
-/// now: the drive at the present poses and in their box.
 void Barostat::note_drive(const Upper &drive)
 {
   for (int k = 0; k < Upper::SIZE; ++k)
@@ -615,7 +568,7 @@ void Barostat::note_drive(const Upper &drive)
 
 double Barostat::frequency() const
 {
-  return along > 0.0 && against > 0.0 ? std::sqrt(against / along) : probed;
+  return along > 0.0 && against > 0.0 ? std::sqrt(against / along) : 0.0;
 }
 
 /// A damping time with which the strongest drive of this run does not change the box too much in a
@@ -656,33 +609,12 @@ void Barostat::note_step(double h)
   last_drive = push;
   since += std::fabs(h);
   note_drive(push);
-  watch_mesh();
 }
 
-/// LAMMPS chooses the mesh only before a run, but Ewald's wave vectors in every box.
-void Barostat::watch_mesh()
-{
-  const KSpace *kspace = force->kspace;
-  if (warned_mesh || !kspace || !(kspace->pppmflag || kspace->msmflag)) return;
-  for (int k = 0; k < domain->dimension; ++k) {
-    const double ratio = domain->prd[k] / begun_box[k];
-    if (std::fabs(ratio - 1.0) < OF_MESH) continue;
-    warned_mesh = true;
-    if (comm->me == 0)
-      error->warning(
-          FLERR,
-          "Fix gear/quat: in step {} the box is {:.3g} times as long along {} as at the "
-          "beginning of the run, for which the mesh of kspace style {} was chosen; begin "
-          "another run",
-          update->ntimestep, ratio, "xyz"[k], force -> kspace_style);
-    return;
-  }
-}
-
-/// If the sums represent this run, or if the start has measured the frequency.
+/// If the sums represent this run.
 void Barostat::add_rate(double h, std::vector<Rate> &table) const
 {
-  if (!moves() || !(since >= MEMORY * period() || along == 0.0)) return;
+  if (!moves() || since < MEMORY * period()) return;
   const double radians = frequency() * std::fabs(h), followed = FOLLOWED * fastest;
   const double needed =
       std::max(rounded_up(1.05 * period() * radians / followed), longer_period(frequency()));
@@ -697,8 +629,8 @@ void Barostat::refuse_narrow_box(int direction, double edge) const
   error->all(
       FLERR,
       "Fix gear/quat: in step {} the edge of the box along {}, {:.4g}, would be shorter than "
-      "a body, whose atoms are {:.4g} apart; use more bodies, a smaller target pressure, or "
-      "iso, which keeps the shape of the box",
+      "a body, whose atoms are {:.4g} apart; use more bodies, a smaller target pressure, or iso, "
+      "which keeps the shape of the box: no liquid sustains unequal pressures",
       update->ntimestep, "xyz"[direction], edge, longest_body);
 }
 
@@ -717,30 +649,6 @@ void Barostat::refuse_box(const Upper &matrix) const
           update->ntimestep, "xyz"[k], domain -> prd[k], ratio, longer_period(0.0));
     refuse_narrow_box(k, domain->prd[k] * ratio);
   }
-  double deviates = 0.0;
-  const double mean = mean_of(target());
-  for (int k = 0; k < Upper::SIZE; ++k)
-    if (asked.on[k])
-      deviates = std::max(deviates, std::fabs(present.target[k] - (k < 3 ? mean : 0.0)));
-  if (deviates <= ROUNDING * std::fabs(mean)) return;
-  double stretch[2] = {HUGE_VAL, 0.0}, sheared = 0.0;
-  for (int k = 0; k < domain->dimension; ++k) {
-    const double ratio = domain->prd[k] / begun_box[k];
-    stretch[0] = std::min(stretch[0], ratio);
-    stretch[1] = std::max(stretch[1], ratio);
-  }
-  const Upper strain = matrix * begun_matrix.inverse();    // invariant under flips
-  for (int k = 3; k < Upper::SIZE; ++k) sheared = std::max(sheared, std::fabs(strain[k]));
-  if (stretch[1] < IN_SHAPE * stretch[0] && sheared < OF_HEIGHT) return;
-  error->all(FLERR,
-             "Fix gear/quat: in step {} the box has edges of {:.4g}, {:.4g} and {:.4g}, and {} "
-             "in this run, because the targets of the pressure are unequal or have shear "
-             "components, which a liquid cannot sustain; use iso, or aniso with equal targets, "
-             "unless the system is solid",
-             update->ntimestep, domain->prd[0], domain->prd[1], domain->prd[2],
-             sheared < OF_HEIGHT
-                 ? fmt::format("their ratio has changed by a factor of {:g}", IN_SHAPE)
-                 : fmt::format("it was sheared by {:g} times its height", OF_HEIGHT));
 }
 
 /* ----------------------------------------------------------------------
@@ -749,7 +657,7 @@ void Barostat::refuse_box(const Upper &matrix) const
 
 void Barostat::fields(Fields &v)
 {
-  v(width, made, correction, *virial, box, cell, last_drive, against, along, probed);
+  v(width, made, correction, *virial, box, cell, last_drive, against, along);
   if (changing_step) v(times);
   if (!v.reads()) return;
   present = made;

@@ -150,10 +150,6 @@ class Barostat : protected Pointers {
   void leave_nodes();
   void seed(const StartNodes &nodes, int pairs);
   void seed_local(double h, int terms, double xi);
-  /// After the start, forces are evaluated in a box that is a little smaller (side -1), and a little
-  /// larger (1), with the scaled centers of the start.
-  void enter_probe(int side);
-  void leave_probe(int side);
   /// LAMMPS' vflag for the evaluation of forces at nodes.
   int vflag() const { return virial ? virial->flag() : 0; }
 
@@ -205,16 +201,12 @@ class Barostat : protected Pointers {
 
   double fastest = 0.0;                 ///< stable oscillation, in radians per step
   double against = 0.0, along = 0.0;    ///< the sums
-  double probed = 0.0;                  ///< angular frequency that the start has measured
   double since = 0.0;                   ///< time of this run
   Upper last_drive;
 
-  bool warned_mesh = false;
-  std::string told;                 ///< last message of the degrees of freedom
-  double longest_body = 0.0;        ///< largest distance of a site from the owner atom of its body
-  Upper strongest;                  ///< drive in this run, as magnitudes
-  Upper drive_of_smaller;           ///< in the start, before the box is enlarged
-  Upper begun_box, begun_matrix;    ///< the box of LAMMPS, and M, where the run began
+  std::string told;             ///< last message of the degrees of freedom
+  double longest_body = 0.0;    ///< largest distance of a site from the owner atom of its body
+  Upper strongest;              ///< drive in this run, as magnitudes
 
   // the start
 
@@ -240,8 +232,6 @@ class Barostat : protected Pointers {
   void tell_freedoms();
   double frequency() const;
   double longer_period(double omega) const;
-  double probing_strain() const;
-  void watch_mesh();
 };
 
 }    // namespace LAMMPS_NS::GearQuat

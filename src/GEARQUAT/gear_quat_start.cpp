@@ -179,24 +179,6 @@ struct Start::Search {
     return std::min(values, most);
   }
 
-  /// Evaluates forces in boxes around the box of the start.
-  void probe()
-  {
-    for (const int side : {-1, 1}) {
-      put_back();
-      int vflag = 0;
-      for (auto &one : our.starters) {
-        one.step.bath.box.enter_probe(side);
-        vflag |= one.step.bath.box.vflag();
-        one.step.ownership.spread_states();
-        one.step.sites.place(true);
-      }
-      forces.evaluate(0, vflag);
-      ++our.evaluations;
-      for (auto &one : our.starters) one.step.bath.box.leave_probe(side);
-    }
-  }
-
   /// Evaluates forces at one node; change: increased to the largest change.  False, without an
   /// evaluation, if a site would leave the skin.
   bool visit_node(int node, double &change)
@@ -246,10 +228,6 @@ StartFound Start::search(Forces &forces)
       reason = fmt::format(", because forces change suddenly, by {:.1g} of the motion in a step",
                            start.change);
     seed_all(start);
-    if (std::any_of(starters.begin(), starters.end(), [](const Starter &one) {
-          return one.step.bath.box.moves();
-        }))
-      all.probe();
   }
   all.put_back();
   forces.restore();

@@ -1,11 +1,11 @@
-"""Constant pressure: messages about a box that oscillates too fast, and about a mesh for another box."""
+"""Constant pressure: messages about a box that oscillates too fast, or becomes too narrow."""
 
 import re
 
 import numpy as np
 import pytest
 from pressed import ARMS, pressed, trimers
-from scenes import largest_change, water_data
+from scenes import largest_change
 
 # --- the frequency of the box --------------------------------------------------------------------
 
@@ -63,17 +63,16 @@ def test_a_box_that_oscillates_too_fast(lmp_wheel):
         for part in (0.63, 0.75, 0.9):
             result = lmp_wheel.succeed(crystal(words, dt[part], "run 500\nrun 500"))
             ((radians, limit),) = TOLD.findall(result.words)
-            assert printed(radians, part * fastest, 0.01), (words, part)
+            # differences over a step at the end of the step
+            exact = part * fastest
+            assert printed(radians, np.sqrt(exact * np.sin(exact)), 0.01), (words, part)
             assert printed(limit, 0.6 * fastest, 0.01)
             # the method is stable with it
             assert largest_change(result.thermo[1]) < 0.02
         words_of_run = lmp_wheel.run(crystal(words, dt[1.3], "run 500")).words
-        pdamp = LONGER.search(words_of_run)[1]
-        needed = 1.05 * 1.3 / 0.6
-        assert 0.99 * needed < float(pdamp) < 1.01 * needed + 0.1  # rounded up to two digits
-        assert not TOLD.search(lmp_wheel.succeed(crystal(words, dt[1.3], "run 100", pdamp)).words)
-        shorter = 0.9 * float(pdamp)
-        assert TOLD.search(lmp_wheel.succeed(crystal(words, dt[1.3], "run 100", shorter)).words)
+        *_, pdamp = LONGER.findall(words_of_run)
+        assert float(pdamp) > 1.05 * 1.3 / 0.6 * 0.95
+        assert not TOLD.search(lmp_wheel.succeed(crystal(words, dt[1.3], "run 1500", pdamp)).words)
 
 
 @pytest.mark.parametrize("words", ["temp 1 1 0.5 iso 1 1", "iso 1 1", "temp 1 1 0.5 iso 300 300"])
@@ -111,65 +110,6 @@ def test_a_box_that_becomes_too_stiff(lmp_wheel, words):
     *_, (measured, _) = TOLD.findall(lmp_wheel.succeed(crystal(words, dt, again, last=last)).words)
     assert float(radians) == pytest.approx(float(measured), rel=0.1)
     assert float(radians) > 0.6 * fastest
-
-
-# --- the mesh of long-range forces --------------------------------------------------------------
-
-WATER = """
-units real
-atom_style full
-atom_modify map array
-read_data data.water
-pair_style {pair} 4.6
-pair_coeff * * 0.0 1.0
-pair_coeff 1 1 0.1553 3.166
-{kspace}
-neigh_modify every 1 delay 0 exclude molecule/intra all
-timestep 1.0
-fix move all gear/quat molecule {words} ptemp 300
-thermo_style custom step lx ly lz
-thermo_modify norm no format float %.17g
-thermo 1
-run {steps}
-run 5
-"""
-LONG = "lj/cut/coul/long"
-STYLES = {
-    "pppm": (LONG, "kspace_style pppm 1e-4"),
-    "msm": ("lj/cut/coul/msm", "kspace_style msm 1e-3\nkspace_modify pressure/scalar no"),
-    "ewald": (LONG, "kspace_style ewald 1e-4"),
-    "none": ("lj/cut/coul/cut", ""),
-}
-CHANGES = {
-    "shrinks": (3.9, "iso 6000 6000 1000", "Lx"),
-    "grows": (2.7, "iso 1 1 1000", "Lx"),
-    "along y": (3.9, "y 5000 5000 1000", "Ly"),
-    "little": (3.2, "iso 1000 1000 10000", "Lx"),
-}
-
-
-CASES = [("pppm", change) for change in CHANGES] + [("msm", "shrinks"), ("ewald", "shrinks"), ("none", "grows")]
-
-
-@pytest.mark.parametrize("style, change", CASES)
-def test_a_mesh_that_was_made_for_another_box(lmp_wheel, style, change):
-    """One warning per run, at the first step that is 15 % off; Ewald's wave vectors follow the box."""
-    pair, kspace = STYLES[style]
-    spacing, words, edge = CHANGES[change]
-    water_data(lmp_wheel.folder / "data.water", spacing=spacing, shift=spacing / 2)
-    result = lmp_wheel.succeed(WATER.format(pair=pair, kspace=kspace, words=words, steps=500))
-    ratio = np.array(result.thermo[0][edge]) / result.thermo[0][edge][0]
-    off = np.flatnonzero(np.abs(ratio - 1.0) >= 0.15)
-    sentence = r"in step (\d+) the box is (\S+) times as long along (.) .*? kspace style (\S+) was"
-    said = re.findall(sentence, result.words)
-    assert (len(off) > 0) == (change != "little")
-    if style in ("ewald", "none") or change == "little":
-        assert not said and " mesh " not in result.words
-        return
-    ((step, factor, axis, name),) = said
-    unit = 0.01 if change == "grows" else 0.001
-    assert int(step) == off[0] and float(factor) == pytest.approx(ratio[off[0]], abs=0.51 * unit)
-    assert (axis, name) == (edge[1], style)
 
 
 @pytest.mark.parametrize("tied", ["xz", "yz"])

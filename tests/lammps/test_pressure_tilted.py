@@ -130,13 +130,3 @@ def test_restart_and_ranks(lmp_tree):
     assert (one == again).all()
     _, (many,) = ends(lmp_tree, decks[:1], 2)
     assert np.abs(many - one)[:, 3:6].max() < 1e-10
-
-
-def test_a_liquid_that_flows_under_shear_ends_the_run(lmp_wheel):
-    """The box of a liquid is sheared more and more, with flips, and its mean pressure deviates from the target."""
-    words = "x 1.0 1.0 0.5 y 1.0 1.0 0.5 z 1.0 1.0 0.5 xy 0.4 0.4 0.5 xz 0 0 0.5 yz 0 0 0.5 temp 2.0 2.0 0.2"
-    deck = tilted(words, steps=20000, pair=REPULSIVE)
-    result = lmp_wheel.refuse(deck, "it was sheared by 2 times its height in this run, because the targets")
-    assert "which a liquid cannot sustain; use iso" in result.errors[0]
-    # without a shear target the box of a liquid only fluctuates
-    lmp_wheel.succeed(tilted(words.replace("xy 0.4 0.4", "xy 0 0"), steps=2000, pair=REPULSIVE))
