@@ -46,8 +46,8 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
            tally_virial(vflag, f);
          }),
     driven_box(lmp, this, args, bodies, ownership, sites, other_fixes, step),
-    minimization(lmp, bodies, ownership, sites), restarts(lmp, this, bodies, ownership, step),
-    respa(lmp), outputs(lmp, bodies, ownership, sites, args.mol)
+    minimization(lmp, bodies, ownership, sites), respa(lmp),
+    outputs(lmp, bodies, ownership, sites, args.mol)
 {
   time_integrate = rigid_flag = 1;
   scalar_flag = vector_flag = array_flag = local_flag = 1;
@@ -174,7 +174,6 @@ void FixGearQuat::setup_pre_exchange()
 void FixGearQuat::setup_pre_neighbor()
 {
   ownership.check_whole();
-  ownership.choose_large();
   update_bodies();
   driven_box.follow_images();
   const bool defined = step.phase == Phase::DEFINED;
@@ -444,21 +443,12 @@ double FixGearQuat::memory_usage()
    per-atom data, forwarded to the ownership of bodies
 ------------------------------------------------------------------------- */
 
-/// A new atom is outside all bodies until set_molecule() assigns it to one.
-void FixGearQuat::set_arrays(int i)
-{
-  ownership.set_arrays(i);
-  if (atom->mask[i] & groupbit) ownership.note_outside_atom(1);
-}
-
 /// Another fix has inserted a molecule of the template.
 /// Makes one body of the atoms that were just created on all ranks, from index `first` on; its ID is
 /// the smallest molecule ID of its atoms.
 void FixGearQuat::set_molecule(int first, tagint /*before*/, int which, double *center,
                                double *velocity, double *quat)
 {
-  for (int i = first; i < atom->nlocal; ++i)
-    if (atom->mask[i] & groupbit) ownership.note_outside_atom(-1);
   tagint smallest = MAXTAGINT;
   for (int i = first; i < atom->nlocal; ++i) smallest = std::min(smallest, atom->molecule[i]);
   const tagint molecule = over_ranks(MPI_MIN, smallest, world);
@@ -477,23 +467,83 @@ void FixGearQuat::set_molecule(int first, tagint /*before*/, int which, double *
 
 void FixGearQuat::write_restart(FILE *fp)
 {
-  if (comm->me == 0) restarts.write(fp);
+  if (comm->me != 0) return;
+  Fields written;
+  double extended = ownership.extended().has_records();
+  written(extended);
+  step.write(written);
+  const auto &numbers = written.numbers();
+  const double head[] = {Fields::MAGIC, Fields::FORMAT, (double) numbers.size()};
+  const int size = (int) (sizeof(head) + numbers.size() * sizeof(double));
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(head, sizeof(head), 1, fp);
+  fwrite(numbers.data(), size - sizeof(head), 1, fp);
 }
 
-void FixGearQuat::write_restart_file(const char *file)
+/// LAMMPS does not pass the size of the block, so the part that every release wrote is read first.
+void FixGearQuat::restart(char *buf)
 {
-  if (step.phase == Phase::DEFINED) return;    // the user may still change the atoms
-  show_bodies();
-  restarts.write_bodies(fmt::format("{}.{}.gear_quat", file, id), array_local);
+  double head[3];
+  std::memcpy(head, buf, sizeof(head));
+  if (head[0] != Fields::MAGIC || head[1] != Fields::FORMAT || !(head[2] >= 0.0))
+    error->all(FLERR,
+               "Fix gear/quat: the data of fix {} in the restart file are from another release of "
+               "GEARQUAT, whose format this release does not read; continue with that release, or "
+               "give the fix another ID, with which its bodies start from their atoms",
+               id);
+  Fields::Numbers numbers((size_t) head[2]);
+  std::memcpy(numbers.data(), buf + sizeof(head), numbers.size() * sizeof(double));
+  file = Fields(numbers);
 }
 
-/// The bodies of a restart file continue if the command creates the same bodies.
+/// The first number is the count of numbers, with which other fixes skip these data.
+int FixGearQuat::pack_restart(int i, double *buf)
+{
+  const int n = HEAD + ownership.pack_exchange(i, buf + HEAD);
+  buf[0] = n;
+  buf[1] = ubuf(atom->tag[i]).d;
+  return n;
+}
+
+/// The bodies of a restart file continue if the command creates the same bodies.  Atoms that have
+/// come or gone since the file was read do not have their own data.
 void FixGearQuat::resume()
 {
-  if (!restarts.was_read()) return;
-  const bool others_come = !args.mol.empty();    // insertions may come from outside of the group
-  if (restarts.resume(others_come ? groupbit : 0))
+  if (!file.reads()) return;
+  Fields data;
+  std::swap(data, file);
+  double extended = 0.0;
+  data(extended);
+  step.adopt_scheme(data);
+  std::vector<const double *> packed(atom->nlocal, nullptr);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const double *row = atom->extra[i];
+    for (int n = 0; n < place; ++n) row += (int) row[0];
+    if ((tagint) ubuf(row[1]).i == atom->tag[i]) packed[i] = row + HEAD;
+  }
+  // insertions may come from outside of the group
+  if (ownership.resume(packed, extended != 0.0, args.mol.empty() ? 0 : groupbit)) {
+    if (!step.read(data))
+      error->all(FLERR, "Fix gear/quat: the data of fix {} in the restart file are damaged", id);
     step.phase = Phase::COMPARED;
-  else
-    create_bodies();
+    return;
+  }
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: the bodies of this command do not consist of the same atoms as "
+                   "in the restart file; they are rebuilt from their atoms");
+  create_bodies();
+}
+
+/// All bodies in the format of infile.
+void FixGearQuat::write_restart_file(const char *name)
+{
+  if (step.phase == Phase::DEFINED) return;    // the user may still change the atoms
+  auto lines = outputs.lines();
+  write_given_bodies(
+      lmp, fmt::format("{}.{}.gear_quat", name, id),
+      fmt::format("fix {} gear/quat: mass, center of mass, inertia tensor and momenta of {} bodies "
+                  "on timestep {}",
+                  id, bodies.number(), update->ntimestep),
+      lines);
 }

@@ -22,12 +22,12 @@ FixStyle(gear/quat,FixGearQuat);
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_driven_box.h"
+#include "gear_quat_fields.h"
 #include "gear_quat_fixes.h"
 #include "gear_quat_forces.h"
 #include "gear_quat_given_bodies.h"
 #include "gear_quat_minimize.h"
 #include "gear_quat_outputs.h"
-#include "gear_quat_restart.h"
 #include "gear_quat_step.h"
 
 #include <cmath>
@@ -76,7 +76,7 @@ class FixGearQuat : public Fix {
   int modify_param(int, char **) override;
   double memory_usage() override;
 
-  void set_arrays(int) override;
+  void set_arrays(int i) override { ownership.set_arrays(i); }
   void set_molecule(int, tagint, int, double *, double *, double *) override;
 
   // data of atoms
@@ -103,11 +103,11 @@ class FixGearQuat : public Fix {
   }
 
   void write_restart(FILE *) override;
-  void restart(char *buf) override { restarts.read(buf); }
-  int pack_restart(int i, double *buf) override { return restarts.pack(i, buf); }
-  void unpack_restart(int, int nth) override { restarts.note_place(nth); }
-  int size_restart(int i) override { return restarts.size(i); }
-  int maxsize_restart() override { return restarts.max_size(); }
+  void restart(char *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int nth) override { place = nth; }
+  int size_restart(int i) override { return HEAD + ownership.packed_size(i); }
+  int maxsize_restart() override { return HEAD + ownership.max_exchange(); }
   void write_restart_file(const char *) override;
   void *extract(const char *name, int &dim) override { return outputs.extract(name, dim); }
 
@@ -123,11 +123,14 @@ class FixGearQuat : public Fix {
   GearQuat::Step step;
   GearQuat::DrivenBox driven_box;
   GearQuat::Minimization minimization;
-  GearQuat::Restart restarts;
   GearQuat::RespaForces respa;
   GearQuat::Outputs outputs;
 
   std::vector<GearQuat::StatedMolecule> stated;    // one for each molecule of the template
+
+  GearQuat::Fields file;            ///< the numbers of a restart file that were not read yet
+  int place = 0;                    ///< number of other fixes whose data of an atom precede in it
+  static constexpr int HEAD = 2;    ///< numbers of an atom before its data: their count, and its ID
 
   bool told_of_ids = false;       ///< a warning about changed molecule IDs was given
   int told_of_groups = 0;         ///< their bits: a warning about parts of bodies was given

@@ -101,7 +101,6 @@ void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
   if (steps && (lmp->update->dt == 0.0 || !std::isfinite(lmp->update->dt)))
     lmp->error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}",
                     lmp->update->dt);
-  ownership.refuse_atoms();
   if (steps) refuse_respa_with_steps(lmp);
   refuse_other_integrators(lmp, fix, fleet, ownership);
   warn_of_walls(lmp, fix);

@@ -328,44 +328,14 @@ bool Extended::match(int i, double mass, const BodyState &state) const
    per-atom records
 ------------------------------------------------------------------------- */
 
-void Extended::grow(int nmax)
-{
-  if (kept) records.resize(nmax);
-}
-
-void Extended::set(int i)
-{
-  if (kept) records[i] = Record();
-}
-
-void Extended::copy(int from, int to)
-{
-  if (kept) records[to] = records[from];
-}
-
-int Extended::packed_size(int i) const
-{
-  if (!kept) return 0;
-  return records[i].kind == 0.0 ? 1 : RECORD_SIZE;
-}
-
 int Extended::pack(int i, double *buf) const
 {
-  const int size = packed_size(i);
-  if (size) std::memcpy(buf, &records[i], size * sizeof(double));
-  return size;
+  if (kept) std::memcpy(buf, &records[i], sizeof(Record));
+  return packed_size();
 }
 
 int Extended::unpack(int i, const double *buf)
 {
-  if (!kept) return 0;
-  records[i] = Record();
-  const int size = buf[0] == 0.0 ? 1 : RECORD_SIZE;
-  std::memcpy(&records[i], buf, size * sizeof(double));
-  return size;
-}
-
-double Extended::memory_usage() const
-{
-  return records.capacity() * sizeof(Record) + sites.capacity() * sizeof(Site);
+  if (kept) std::memcpy(&records[i], buf, sizeof(Record));
+  return packed_size();
 }

@@ -75,14 +75,26 @@ class Extended : protected Pointers {
 
   // per-atom records
 
-  void grow(int nmax);
-  void set(int atom);
-  void copy(int from, int to);
-  int packed_size(int atom) const;
+  void grow(int nmax)
+  {
+    if (kept) records.resize(nmax);
+  }
+  void set(int atom)
+  {
+    if (kept) records[atom] = Record();
+  }
+  void copy(int from, int to)
+  {
+    if (kept) records[to] = records[from];
+  }
+  static constexpr int RECORD_SIZE = 11;    ///< doubles of a record
+  int packed_size() const { return kept ? RECORD_SIZE : 0; }
   int pack(int atom, double *buf) const;
   int unpack(int atom, const double *buf);
-  static constexpr int RECORD_SIZE = 11;    ///< doubles of a record
-  double memory_usage() const;
+  double memory_usage() const
+  {
+    return records.capacity() * sizeof(Record) + sites.capacity() * sizeof(Site);
+  }
 
  private:
   enum Shape { POINT, SPHERE, ELLIPSOID, LINE, TRIANGLE, BODY };
@@ -96,6 +108,7 @@ class Extended : protected Pointers {
     int shape() const { return (int) kind / 2; }
     bool dipole() const { return (int) kind % 2; }
   };
+  static_assert(sizeof(Record) == RECORD_SIZE * sizeof(double));
 
   struct Own {    ///< an atom in the atom style
     int shape, dipole;

@@ -6,7 +6,8 @@
 /* The numbers of a restart file besides the data of atoms.
 
    An object with state has a function fields(Fields &), the only list of the members that decide
-   about later steps or outputs; it writes them and reads them.  tests/lammps/test_restart_state.py
+   about later steps or outputs; it writes them and reads them.  In the file they follow MAGIC, FORMAT
+   and their count.  A file is read by releases with the same format.  tests/lammps/test_restart_state.py
    names all other members, with the reason why they are in no file. */
 
 #ifndef GEAR_QUAT_FIELDS_H
@@ -22,6 +23,8 @@ namespace LAMMPS_NS::GearQuat {
 class Fields {
  public:
   using Numbers = std::vector<double>;
+  static constexpr double MAGIC = 0x6765617271756174;    ///< "gearquat"
+  static constexpr double FORMAT = 11;
 
   /// To write.
   Fields() = default;

@@ -31,14 +31,6 @@ static constexpr int COLUMNS = 20;
 
 namespace {
 
-/// A line of the file.
-struct Line {
-  tagint id;
-  GivenBody body;
-};
-
-/// Positions among the numbers of a GivenBody.
-enum { MASS, INERTIA = 4 };
 static constexpr int NUMBERS = GivenBody::NUMBERS;
 static_assert(offsetof(GivenBody, image) == NUMBERS * sizeof(double), "as many words in a line");
 
@@ -76,14 +68,14 @@ bigint integer(const std::string &word, const std::string &where, const char *wh
   return value > most || value < -most ? most + 1 : value;
 }
 
-Line parse_line(const std::vector<std::string> &words, const std::string &where)
+GivenLine parse_line(const std::vector<std::string> &words, const std::string &where)
 {
   if (words.size() != COLUMNS)
     throw Fault{where + " has " + std::to_string(words.size()) + " words instead of " +
                 std::to_string(COLUMNS) +
                 ": ID mass x y z ixx iyy izz ixy ixz iyz vx vy vz lx ly lz ix iy iz"};
   static constexpr const char *INTEGERS = "body ID and image flags are";
-  Line line;
+  GivenLine line;
   const bigint id = integer(words[0], where, INTEGERS, MAXTAGINT - 1);
   if (id < 1 || id == MAXTAGINT)
     throw Fault{where + ": body ID " + words[0] + " is not positive or too large"};
@@ -95,22 +87,18 @@ Line parse_line(const std::vector<std::string> &words, const std::string &where)
   }
   double numbers[NUMBERS];
   for (int i = 0; i < NUMBERS; ++i) numbers[i] = number(words[1 + i], where);
-  if (numbers[MASS] <= 0.0)
+  if (numbers[0] <= 0.0)
     throw Fault{where + ": mass " + words[1] + " of body " + words[0] + " is not positive"};
-  for (int i = INERTIA; i < INERTIA + 3; ++i)
-    if (numbers[i] < 0.0)
-      throw Fault{where + ": body " + words[0] + " has a negative diagonal moment of inertia " +
-                  words[1 + i]};
   std::memcpy(&line.body, numbers, sizeof(numbers));
   return line;
 }
 
-std::vector<Line> parse_file(const std::string &filename)
+std::vector<GivenLine> parse_file(const std::string &filename)
 {
   std::ifstream file(filename);
   if (!file) throw Fault{"cannot open file " + filename};
 
-  std::vector<Line> lines;
+  std::vector<GivenLine> lines;
   std::map<tagint, int> seen;
   std::string text;
   std::string announced;
@@ -148,7 +136,7 @@ std::vector<Line> parse_file(const std::string &filename)
 GivenBodies GearQuat::read_given_bodies(LAMMPS *lmp, const std::string &filename)
 {
   if (filename.empty()) return {};
-  std::vector<Line> lines;
+  std::vector<GivenLine> lines;
   std::string fault;
   if (lmp->comm->me == 0) {
     try {
@@ -166,6 +154,33 @@ GivenBodies GearQuat::read_given_bodies(LAMMPS *lmp, const std::string &filename
   GivenBodies bodies;
   for (const auto &line : gather(lines, lmp->world)) bodies[line.id] = line.body;
   return bodies;
+}
+
+void GearQuat::write_given_bodies(LAMMPS *lmp, const std::string &filename,
+                                  const std::string &title, std::vector<GivenLine> &mine)
+{
+  const auto before = [](const GivenLine &a, const GivenLine &b) {
+    return a.id < b.id;
+  };
+  const std::vector<GivenLine> all = gather_sorted(mine, lmp->world, before, 0);
+  if (lmp->comm->me != 0) return;
+  const auto refuse = [&] {
+    lmp->error->one(FLERR, "Fix gear/quat: cannot write file {}: {}", filename,
+                    utils::getsyserror());
+  };
+  const std::string unfinished = filename + ".tmp";
+  FILE *file = fopen(unfinished.c_str(), "w");
+  if (!file) refuse();
+  fprintf(file, "# %s\n\n%zu\n", title.c_str(), all.size());
+  for (const GivenLine &line : all) {
+    double numbers[NUMBERS];
+    std::memcpy(numbers, &line.body, sizeof(numbers));
+    fprintf(file, TAGINT_FORMAT, line.id);
+    for (const double number : numbers) fprintf(file, " %.16e", number);
+    fprintf(file, " %d %d %d\n", line.body.image[0], line.body.image[1], line.body.image[2]);
+  }
+  const bool failed = ferror(file) != 0;
+  if (fclose(file) != 0 || failed || rename(unfinished.c_str(), filename.c_str()) != 0) refuse();
 }
 
 /* ----------------------------------------------------------------------

@@ -5,7 +5,6 @@
 
 #include "gear_quat_outputs.h"
 
-#include "gear_quat_given_bodies.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -106,6 +105,34 @@ double Outputs::global(int row, int column)
     gathered = sites.placements();
   }
   return row < (int) all.size() ? all[row][column] : 0.0;
+}
+
+std::vector<GivenLine> Outputs::lines() const
+{
+  std::vector<GivenLine> made;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const RigidBody &rigid = bodies.rigid_of(ibody);
+    const double *q = bodies.state_of(ibody).q;
+    Row row;
+    fill_row(ibody, row.data());
+    GivenBody body = {};
+    body.mass = rigid.mass;
+    std::copy_n(&row[CENTER], 3, body.center);
+    std::copy_n(&row[VELOCITY], 3, body.velocity);
+    std::copy_n(&row[ANGULAR_MOMENTUM], 3, body.angular_momentum_space);
+    std::copy_n(&row[IMAGE], 3, body.image);
+
+    // A^T I A, where the rows of A are the principal axes; xx yy zz xy xz yz
+
+    static constexpr int FIRST[6] = {0, 1, 2, 0, 0, 1}, SECOND[6] = {0, 1, 2, 1, 2, 2};
+    double a[9];
+    rotation_matrix(q, dot4(q, q), a);
+    for (int m = 0; m < 6; ++m)
+      for (int k = 0; k < 3; ++k)
+        body.inertia[m] += rigid.inertia[k] * a[3 * k + FIRST[m]] * a[3 * k + SECOND[m]];
+    made.push_back({bodies.body_at(ibody).id, body});
+  }
+  return made;
 }
 
 /// A center in the box and its image flags, also if they exceed the range of integers.

@@ -9,6 +9,7 @@
 #ifndef LMP_GEAR_QUAT_OUTPUTS_H
 #define LMP_GEAR_QUAT_OUTPUTS_H
 
+#include "gear_quat_given_bodies.h"
 #include "gear_quat_sites.h"
 
 #include <array>
@@ -46,6 +47,9 @@ class Outputs : protected Pointers {
   /// A number of the global array, 0 in rows without a body.  Rows are gathered at the first
   /// request after sites were listed or placed: collective.
   double global(int row, int column);
+
+  /// Owned bodies as lines of an infile.
+  std::vector<GivenLine> lines() const;
 
   /// Data that other C++ code may request from the fix by name, see Fix::extract(): names as in fix
   /// rigid where they exist.  Bodies are numbered as in the local data, owned bodies first.  Null

@@ -51,20 +51,13 @@ tagint Ownership::id_of(int i) const
   return assigned[i < atom->nlocal ? i : atom->map(atom->tag[i])].id;
 }
 
-std::vector<tagint> Ownership::owner_tags() const
-{
-  std::vector<tagint> tags;
-  for (int i = 0; i < atom->nlocal; ++i) tags.push_back(assigned[i].owner);
-  return tags;
-}
-
 /* ----------------------------------------------------------------------
    life cycle
 ------------------------------------------------------------------------- */
 
 void Ownership::clear(bool with_extended)
 {
-  large_owners.clear();
+  large.clear();
   bodies.clear();
   owner_atom.clear();
   index.clear();
@@ -135,61 +128,39 @@ void Ownership::recreate()
   }
   clear();
   add(ids, GivenBodies(), false, &former);
-  choose_large();
 }
 
-Ownership::Resumed Ownership::resume(const std::vector<const double *> &packed, bool with_extended,
-                                     int group)
+bool Ownership::resume(const std::vector<const double *> &packed, bool with_extended, int group)
 {
   std::vector<tagint> ids;    // numbered by the command
   for (int i = 0; i < atom->nlocal; ++i) ids.push_back(assigned[i].id);
   const bigint expected = bodies.number();
   clear(with_extended);
-  int here[2] = {0, 0};    // atoms in a body only here, only in the file
+  int differs = 0;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (packed[i]) unpack_exchange(i, packed[i]);
     if (group && !(atom->mask[i] & group)) continue;
     Assigned &one = assigned[i];
-    if (one.id == 0 && ids[i] != 0) here[0] = 1;
-    if (one.id != 0 && ids[i] == 0) here[1] = 1;
+    if ((one.id == 0) != (ids[i] == 0)) differs = 1;
     one.id = ids[i];
     if (one.owned >= 0) bodies.change_body(one.owned).id = ids[i];
   }
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (in_body(i)) continue;    // the others are omitted, or in no body
-    if (assigned[i].owned >= 0) remove_owned(assigned[i].owned);
-    set_arrays(i);
-  }
   count();
-  const auto any = over_ranks(MPI_MAX, here, world);
   const bool whole = !count_atoms().broken;
-  if (!any[0] && whole && (group || bodies.number() == expected))
-    return any[1] ? Resumed::FEWER : Resumed::ALL;
+  differs = over_ranks(MPI_MAX, differs, world);
+  if (!differs && whole && (group || bodies.number() == expected)) return true;
   clear();
-  return Resumed::NONE;
-}
-
-void Ownership::refuse_atoms() const
-{
-  std::vector<int> atoms;
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (in_body(i)) atoms.push_back(i);
-  records.refuse(atoms);
+  return false;
 }
 
 void Ownership::check_whole()
 {
-  const Comparison found = count_atoms();
-  if (found.broken) {
-    const std::string had = found.had
-        ? fmt::format("has {} of its {} atoms left", found.left, found.had)
-        : fmt::format("has {} of its atoms left, without its owner atom", found.left);
+  if (const tagint broken = count_atoms().broken)
     error->all(FLERR,
-               "Fix gear/quat: body {} {}; a body must be removed as a whole, and no atom "
-               "of it may leave the box through a face that is not periodic, as it does if the "
-               "time step is too long or atoms overlap",
-               found.broken, had);
-  }
+               "Fix gear/quat: body {} has lost some of its atoms; a body must be removed as a "
+               "whole, and no atom of it may leave the box through a face that is not periodic, as "
+               "it does if the time step is too long or atoms overlap",
+               broken);
   follow_atom_ids();
 }
 
@@ -241,8 +212,9 @@ struct AtomsOfBody {
 
 Comparison Ownership::count_atoms(int groupbit) const
 {
-  const std::vector<tagint> tags = owner_tags();
-  const Parts parts(comm, world, tags.data(), atom->nlocal);
+  std::vector<tagint> owners;
+  for (int i = 0; i < atom->nlocal; ++i) owners.push_back(assigned[i].owner);
+  const Parts parts(comm, world, owners.data(), atom->nlocal);
   std::vector<AtomsOfBody> counts(parts.number());
   std::vector<int> owns(parts.number(), 0);
   for (int part = 0; part < parts.number(); ++part) {
@@ -262,25 +234,19 @@ Comparison Ownership::count_atoms(int groupbit) const
   }
   parts.merge(counts);
 
-  Comparison found;
+  Comparison found = {0, 0, 0};
   for (int part = 0; part < parts.number(); ++part) {
     const AtomsOfBody &body = counts[part];
-    if (body.natoms != body.had || body.smallest_id != body.largest_id) {
+    if (body.natoms != body.had || body.smallest_id != body.largest_id)
       found.broken = body.smallest_id;
-      found.left = body.natoms;
-      found.had = body.had;
-    }
     if (!owns[part]) continue;
     if (body.in_group > 0 && body.in_group < body.natoms) found.divided = body.smallest_id;
     if (body.in_group == body.natoms)
       found.removed_freedoms += domain->dimension * body.natoms + body.own_freedoms - body.freedoms;
   }
-  found.removed_freedoms = over_ranks(MPI_SUM, found.removed_freedoms, world);
-  const tagint broken = over_ranks(MPI_MAX, found.broken, world);
-  bigint here[] = {found.divided, 0, 0};
-  if (found.broken == broken) here[1] = found.left, here[2] = found.had;
+  tagint here[2] = {found.divided, found.broken};
   const auto largest = over_ranks(MPI_MAX, here, world);
-  return {found.removed_freedoms, (tagint) largest[0], broken, largest[1], largest[2]};
+  return {over_ranks(MPI_SUM, found.removed_freedoms, world), largest[0], largest[1]};
 }
 
 /* ----------------------------------------------------------------------
@@ -290,7 +256,7 @@ Comparison Ownership::count_atoms(int groupbit) const
 void Ownership::drop_copies()
 {
   bodies.drop_copies();
-  large_owners.clear();
+  large.clear();
 }
 
 int Ownership::add_owned(int atom)
@@ -320,14 +286,14 @@ void Ownership::update()
       share_large();
       for (Assigned &one : assigned) one.shared = -1;
       for (size_t i = atom->nlocal; i < assigned.size(); ++i) assigned[i].owned = -1;
-      if (number_of_large() < bodies.number()) {
+      if ((bigint) large.size() < bodies.number()) {
         share_owners();
         send(nullptr, 0, true);
       }
     }
     bodies.list();
     find_bodies();
-  } while (!take_stock());
+  } while (!all_found());
 }
 
 /// Many bodies are sorted in the order of their atoms, so that a step accesses memory in one
@@ -376,34 +342,23 @@ void Ownership::find_bodies()
   }
 }
 
-/// Counts over all ranks.  False if some bodies have become large: the update must be repeated.
-bool Ownership::take_stock()
+/// False if bodies of which some atoms have not found the owner have become large: the update must
+/// be repeated.  Collective.
+bool Ownership::all_found()
 {
-  const bigint lost = (bigint) unseen.size();
-  bigint here[6] = {bodies.nowned(), 0, 0, lost, outside_atoms, 0};
+  bigint here[5] = {bodies.nowned(), 0, 0, (bigint) unseen.size(), 0};
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here[1] += bodies.body_at(ibody).natoms;
   for (int i = 0; i < atom->nlocal; ++i) {
     here[2] += in_body(i);
-    here[5] += index[i] >= bodies.nmoved();
+    here[4] += index[i] >= bodies.nmoved();
   }
   const auto all = over_ranks(MPI_SUM, here, world);
   bodies.set_number(all[0]);
   natoms = all[1];
-  any_ghosts = all[5] > 0;
+  any_ghosts = all[4] > 0;
   if (all[1] != all[2] || all[3] > 0) check_whole();
-  if (all[3] > 0) {
-    promote();
-    return false;
-  }
-  if (all[4] > 0 && !warned_outside) {
-    warned_outside = true;
-    if (comm->me == 0)
-      error->warning(FLERR,
-                     "Fix gear/quat: {} atoms of the fix group were created after the fix was "
-                     "defined; they belong to no body and this fix does not move them",
-                     all[4]);
-  }
-  return true;
+  if (all[3] > 0) promote();
+  return all[3] == 0;
 }
 
 std::vector<tagint> Ownership::all_ids() const
@@ -483,7 +438,6 @@ void Ownership::copy_arrays(int from, int to, int delflag)
 double Ownership::memory_usage() const
 {
   return bodies.memory_usage() + assigned.capacity() * sizeof(Assigned) +
-      large_owners.capacity() * sizeof(tagint) +
       (owner_atom.capacity() + index.capacity()) * sizeof(int) + records.memory_usage();
 }
 
@@ -494,31 +448,24 @@ double Ownership::memory_usage() const
 int Ownership::pack_exchange(int i, double *buf) const
 {
   const Assigned &one = assigned[i];
-  int m = 0;
-  buf[m++] = ubuf(one.id).d;
-  if (one.id == 0) return m;
-  buf[m++] = ubuf(one.owner).d;
-  for (const double number : one.arm) buf[m++] = number;
-  buf[m++] = one.mass;
-  m += records.pack(i, buf + m);
+  std::memcpy(buf, &one, (in_body(i) ? ATOM_SIZE : 1) * sizeof(double));
+  if (!in_body(i)) return 1;    // the ID is in the first number
+  int m = ATOM_SIZE + records.pack(i, buf + ATOM_SIZE);
   const int size = one.owned < 0 ? 0 : bodies.packed_size(Bodies::MOVING);
-  buf[m++] = ubuf(size).d;
+  buf[m++] = size;
   return size == 0 ? m : m + bodies.pack(one.owned, Bodies::MOVING, buf + m);
 }
 
 /// In a restart file a history may have another scheme.
 int Ownership::unpack_exchange(int i, const double *buf)
 {
-  Assigned &one = assigned[i];
-  int m = 0;
   set_arrays(i);
-  one.id = (tagint) ubuf(buf[m++]).i;
-  if (one.id == 0) return m;
-  one.owner = (tagint) ubuf(buf[m++]).i;
-  for (double &number : one.arm) number = buf[m++];
-  one.mass = buf[m++];
-  m += records.unpack(i, buf + m);
-  const int size = (int) ubuf(buf[m++]).i;
+  Assigned &one = assigned[i];
+  std::memcpy(static_cast<void *>(&one), buf, sizeof(double));
+  if (!in_body(i)) return 1;
+  std::memcpy(static_cast<void *>(&one), buf, ATOM_SIZE * sizeof(double));
+  int m = ATOM_SIZE + records.unpack(i, buf + ATOM_SIZE);
+  const int size = (int) buf[m++];
   if (size > 0) bodies.unpack(add_owned(i), Bodies::MOVING, buf + m, size);
   return m + size;
 }
@@ -527,7 +474,7 @@ int Ownership::packed_size(int i) const
 {
   if (!in_body(i)) return 1;
   const int body = assigned[i].owned < 0 ? 0 : bodies.packed_size(Bodies::MOVING);
-  return ATOM_SIZE + records.packed_size(i) + body;
+  return ATOM_SIZE + records.packed_size() + 1 + body;
 }
 
 /* ----------------------------------------------------------------------
@@ -610,23 +557,6 @@ void Ownership::unpack_reverse(int n, const int *list, const double *buf)
    large bodies
 ------------------------------------------------------------------------- */
 
-/// Maximum distance of a ghost atom; with comm_modify mode multi only some atoms extend that far.
-static double ghost_cutoff(const Comm *comm, const Domain *domain)
-{
-  const double *cut = comm->cutghost;    // in a triclinic box along its reciprocal axes
-  return domain->triclinic ? cut[2] / domain->h_inv[2] : cut[2];
-}
-
-void Ownership::choose_large()
-{
-  drop_copies();
-  const double cutoff = ghost_cutoff(comm, domain);
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    Body &one = bodies.change_body(ibody);
-    one.large = comm->nprocs > 1 && (one.large || one.extent > cutoff);
-  }
-}
-
 /// A site cannot find its owner atom, although it exists: its body becomes large.
 void Ownership::promote()
 {
@@ -651,7 +581,6 @@ void Ownership::share_large()
     bodies.pack(ibody, Bodies::MOVING, buf + 1);
   }
   const std::vector<double> all = gather(mine, world);
-  std::map<tagint, int> found;    // by the atom IDs of their owners
   for (size_t m = 0; m < all.size(); m += size) {
     const tagint tag = (tagint) ubuf(all[m]).i;
     const int owner = atom->map(tag);
@@ -660,21 +589,17 @@ void Ownership::share_large()
       ibody = bodies.add_copy();
       bodies.unpack(ibody, Bodies::MOVING, &all[m + 1], size - 1);
     }
-    found[tag] = ibody;
+    large[tag] = ibody;
   }
-  for (const auto &one : found) {
-    large_owners.push_back(one.first);
-    bodies.large.push_back(one.second);
-  }
+  for (const auto &one : large) bodies.large.push_back(one.second);
 }
 
 /// The body of an owned atom, -1 if this rank cannot find it.
 int Ownership::find_body(int i) const
 {
   const tagint tag = assigned[i].owner;
-  const auto found = std::lower_bound(large_owners.begin(), large_owners.end(), tag);
-  if (found != large_owners.end() && *found == tag)
-    return bodies.large[found - large_owners.begin()];
+  const auto found = large.find(tag);
+  if (found != large.end()) return found->second;
   const int owner = atom->map(tag);
   return owner < 0 ? -1 : assigned[owner].owned;
 }

@@ -11,9 +11,9 @@
    owner atom.  Few bodies extend across the border of two ranks, so only the owner atoms of these
    bodies are shared with their ghosts.
 
-   A body that extends further than the cutoff of ghost atoms is large: every rank has this body,
-   with its history, and moves it like its owner; its loads are summed over all ranks.  All other
-   bodies have a history only on the rank of the owner.
+   A body becomes large when one of its atoms finds no ghost of the owner atom: every rank has this
+   body, with its history, and moves it like its owner; its loads are summed over all ranks.  All
+   other bodies have a history only on the rank of the owner.
 
    The fix calls update() after every exchange of atoms, and spread_states() whenever states have
    changed, or spread_moved() if their frames were written with them. */
@@ -27,6 +27,7 @@
 #include "pointers.h"
 
 #include <array>
+#include <cstddef>
 #include <map>
 
 namespace LAMMPS_NS {
@@ -39,10 +40,9 @@ struct Former;
 
 /// Counts, the same on all ranks; bodies are given by their IDs, 0 for none.
 struct Comparison {
-  bigint removed_freedoms = 0;    ///< removed by rigidity from bodies wholly in the group
-  tagint divided = 0;             ///< a body with some of its atoms in the group
-  tagint broken = 0;              ///< a body that has lost atoms, or that is given by several IDs
-  bigint left = 0, had = 0;       ///< its atoms now and before
+  bigint removed_freedoms;    ///< removed by rigidity from bodies wholly in the group
+  tagint divided;             ///< a body with some of its atoms in the group
+  tagint broken;              ///< a body that has lost atoms, or that is given by several IDs
 };
 
 class Ownership : protected Pointers {
@@ -60,8 +60,6 @@ class Ownership : protected Pointers {
   int owned_by(int atom) const { return assigned[atom].owned; }
   /// The local index of the owner atom of an owned body.
   int owner_of(int ibody) const { return owner_atom[ibody]; }
-  /// The atom IDs of the owners of the bodies of all owned atoms, 0 for none.
-  std::vector<tagint> owner_tags() const;
   /// The vector from the center of mass of the body to an atom, along the principal axes.
   const double *arm_of(int atom) const { return assigned[atom].arm; }
   double mass_of(int atom) const;
@@ -70,8 +68,6 @@ class Ownership : protected Pointers {
   {
     return mass_of(atom) != assigned[atom].mass && !bodies.body_at(index[atom]).from_file;
   }
-  /// An atom of the fix group was created or, with -1, added to a body: it belongs to no body yet.
-  void note_outside_atom(int change) { outside_atoms += change; }
   /// label: of all owned atoms, followed by their ghosts, which receive the same.  Collective.
   void spread_labels(std::vector<double> &label) { send(label.data(), 1, true); }
 
@@ -90,16 +86,10 @@ class Ownership : protected Pointers {
   /// Rebuilds the same bodies from the atoms' present masses, positions and velocities.
   void recreate();
   /// Replaces the bodies that the command has just made by the bodies of a restart file, made of
-  /// the same atoms; the command numbers them and may omit some.  Returns NONE, and removes all
-  /// bodies, if they differ otherwise.  packed: of every owned atom, or null; with_extended: there
-  /// are records of extended atoms; group: the file gives the bodies of atoms outside of the group,
-  /// 0 for none.
-  enum class Resumed { ALL, FEWER, NONE };
-  Resumed resume(const std::vector<const double *> &packed, bool with_extended, int group);
-  /// Ends the run if an atom of a body is of a kind that cannot be followed.
-  void refuse_atoms() const;
-  /// Before a run: bodies that extend further than the cutoff of ghost atoms become large.
-  void choose_large();
+  /// the same atoms; the command numbers them.  Returns false, and removes all bodies, if they
+  /// differ.  packed: of every owned atom, or null; with_extended: there are records of extended
+  /// atoms; group: the file gives the bodies of atoms outside of the group, 0 for none.
+  bool resume(const std::vector<const double *> &packed, bool with_extended, int group);
   /// Finds the body of every atom after atoms were exchanged, created or removed; a body that some
   /// of its atoms cannot find becomes large.  Ends the run if a body has lost some of its atoms.
   void update();
@@ -114,11 +104,10 @@ class Ownership : protected Pointers {
   std::vector<tagint> all_ids() const;
   /// Sets these masks, by IDs, for all bodies.  True if one has changed; collective.
   bool change_masks(const std::map<tagint, Mask> &masks);
-  /// Atoms in bodies, on all ranks, and large bodies.
+  /// Atoms in bodies, on all ranks.
   bigint number_of_atoms() const { return natoms; }
   /// True if some atoms on this rank did not move as rigid bodies when they became bodies.
   bool had_free_atoms() const { return free_atoms; }
-  bigint number_of_large() const { return (bigint) bodies.large.size(); }
   /// The box of the positions of bodies, as Domain::h and boxlo.
   const std::vector<double> &box() const { return last_box; }
   /// Sets this box to the current box of LAMMPS.
@@ -156,7 +145,7 @@ class Ownership : protected Pointers {
   void unpack_forward(int n, int first, const double *buf);
   int pack_reverse(int n, int first, double *buf);
   void unpack_reverse(int n, const int *list, const double *buf);
-  int max_exchange() const { return ATOM_SIZE + Extended::RECORD_SIZE + bodies.most_packed(); }
+  int max_exchange() const { return ATOM_SIZE + Extended::RECORD_SIZE + 1 + bodies.most_packed(); }
   int max_forward() const { return 2 + bodies.packed_size(Bodies::OF_GHOST); }
   /// Including the store.
   double memory_usage() const;
@@ -168,15 +157,13 @@ class Ownership : protected Pointers {
 
   bigint natoms = 0;    ///< on all ranks
   bool free_atoms = false;
-  int outside_atoms = 0;          ///< created since the fix was defined, in no body
-  bool warned_outside = false;    ///< of such atoms
-  bool any_ghosts = false;        ///< on some rank an atom belongs to a body of another rank
-                                  ///< that is not large; changes only when atoms are exchanged
+  bool any_ghosts = false;    ///< on some rank an atom belongs to a body of another rank that is
+                              ///< not large; changes only when atoms are exchanged
   std::vector<double> last_box;
-  std::vector<int> owner_atom;         ///< local index of the owner atom of an owned body
-  std::vector<int> index;              ///< see body_of()
-  std::vector<tagint> unseen;          ///< owner atoms of which this rank has not even a ghost
-  std::vector<tagint> large_owners;    ///< atom IDs of the owners of bodies.large, sorted
+  std::vector<int> owner_atom;    ///< local index of the owner atom of an owned body
+  std::vector<int> index;         ///< see body_of()
+  std::vector<tagint> unseen;     ///< owner atoms of which this rank has not even a ghost
+  std::map<tagint, int> large;    ///< indices of large bodies, by the atom IDs of their owners
 
   /// An atom, also a ghost.
   struct Assigned {
@@ -184,14 +171,15 @@ class Ownership : protected Pointers {
     tagint owner = 0;    ///< atom ID of the owner of its body
     double arm[3] = {};
     double mass = 0.0;    ///< when the body was made
-    int owned = -1;       ///< the body it owns, or -1
-    int shared = -1;      ///< the same if atoms on other ranks are in that body, otherwise -1
+
+    // does not travel with the atom
+
+    int owned = -1;     ///< the body it owns, or -1
+    int shared = -1;    ///< the same if atoms on other ranks are in that body, otherwise -1
   };
   std::vector<Assigned> assigned;
-
-  /// packed: IDs of body and owner, arm, mass, size of the body; after the mass the record of an extended
-  /// atom
-  static constexpr int ATOM_SIZE = 7;
+  /// Doubles of an atom before its record as an extended atom, the size of its body, and that body.
+  static constexpr int ATOM_SIZE = offsetof(Assigned, owned) / sizeof(double);
 
   // the data in a message: numbers of all atoms or of all bodies, or, without numbers, ghost bodies
 
@@ -209,7 +197,7 @@ class Ownership : protected Pointers {
   int find_body(int atom) const;
   void find_bodies();
   void order_bodies();
-  bool take_stock();
+  bool all_found();
   void share_large();
   void promote();
 

@@ -239,7 +239,7 @@ std::string Report::effects() const
   row("images", !axes.empty(),
       axes.empty() ? "no direction is periodic"
                    : "periodic in" + axes + "; while sites are in other images");
-  const bigint large = ownership.number_of_large();
+  const size_t large = bodies.large.size();
   std::string ghosts = comm->nprocs == 1 ? "one rank" : "every site is on the rank of its body";
   if (count[OF_GHOSTS])
     ghosts = fmt::format("{} sites have their body on another rank", count[OF_GHOSTS]);

@@ -214,7 +214,7 @@ INFILES = {
     f"1\n{ID1.replace('0.33', '20.33')}\n": "center of mass of body 1 is far away from all its atoms",
     f"1\n{ID1[:-1]}1\n": "are its position and its image flags right?",
     f"1\n{ID1.replace('3.0', '0.0')}\n": "file bodies, line 2: mass 0.0 of body 1 is not positive",
-    f"1\n{ID1.replace(' 1 1 1 ', ' 1 -1 1 ')}\n": "negative diagonal moment of inertia -1",
+    f"1\n{ID1.replace(' 1 1 1 ', ' 1 -1 1 ')}\n": "tensor of body 1 has a negative principal",
 }
 
 # before the fix, after it, message
@@ -243,7 +243,7 @@ SCENES = {
     "part of a body": (
         "",
         "group lost id 2\nrun 1\ndelete_atoms group lost compress no\nrun 1",
-        "body 1 has 2 of its 3 atoms left; a body must be removed as a whole",
+        "body 1 has lost some of its atoms; a body must be removed as a whole",
     ),
     # masses of single atoms are zero until they are set
     "no mass": (

@@ -1,8 +1,8 @@
 """Bodies of any size on several ranks: larger than the ghost cutoff, together with small bodies.
 
 A slab of 288 atoms lies across the boundaries of a box, among some hundred rigid trimers; the ghost
-cutoff is 2.8, the slab extends 8 from its owner atom. All move through the box, so that the owner changes
-its rank too. Forces are smooth and the runs short: differences between ranks are due to rounding.
+cutoff is 2.8, the slab extends 8 from its owner atom, which is not a ghost of all ranks. All move through the
+box, so that the owner changes its rank too. Forces are smooth and the runs short: differences between ranks are due to rounding.
 """
 
 import re
@@ -33,12 +33,12 @@ compute sum all reduce sum c_stress[*]
 """
 
 
-def slab_data(path, height=BOX, cells=CELLS, trimers=True):
+def slab_data(path, height=BOX, cells=CELLS, trimers=True, at=(0.3, 0.3, 0.28)):
     """A slab (molecule 1) and trimers in the lower 20 of a box that may be taller."""
     rng = np.random.default_rng(20251123)
     box = np.array([BOX, BOX, height])
     slab = (np.array(list(np.ndindex(*cells))) - (np.array(cells) - 1) / 2) * SPACING
-    slab = slab @ random_rotation(rng).T + [0.3 * BOX, 0.42 * BOX, 0.5 * BOX]
+    slab = slab @ random_rotation(rng).T + np.array(at) * BOX
     trimer = np.array([[0, 0, 0], [0.9, 0, 0], [0.2, 0.8, 0]])
     trimer -= trimer.mean(axis=0)
     molecules = [slab]
@@ -50,7 +50,7 @@ def slab_data(path, height=BOX, cells=CELLS, trimers=True):
             molecules.append(atoms)
     rows, velocities = [], []
     for number, atoms in enumerate(molecules, 1):
-        stream = np.array([9.0, 7.0, 0.0 if height > BOX else 5.0])
+        stream = np.array([9.0, 14.0, 0.0 if height > BOX else 5.0])
         velocity = stream + rng.normal(size=3) * (0.2 if number == 1 else 1.0)
         spin = rng.normal(size=3) * (0.1 if number == 1 else 1.0)
         image = np.floor(atoms / box)
@@ -169,7 +169,7 @@ def test_the_scene_tells(ends):
 def test_single_and_group(lmp):
     """With the slab on two ranks; in the tree two more are empty (not with MPICH, which waits actively)."""
     ranks, grid = (4, "1 1 4") if lmp.name == "tree" else (2, "2 1 1")
-    data = slab_data(lmp.folder / "data.slab", height=60.0)
+    data = slab_data(lmp.folder / "data.slab", height=60.0, at=(0.3, 0.3, 0.5))
     words = {"single": "single", "group": "group 2 slab rest", "molecule": "molecule"}
     ends = {}
     for n, processors in ((1, "1 1 1"), (ranks, grid)):
@@ -208,7 +208,7 @@ def test_restarts_on_any_number_of_ranks(lmp_tree):
 
 def test_a_body_that_loses_sight_of_its_owner_becomes_large(lmp_tree):
     """In mode multi the cutoff for ghosts of type 1 is 1.4, though the longest ghost cutoff is 2.8."""
-    data = slab_data(lmp_tree.folder / "data.slab", cells=(4, 4, 2))
+    data = slab_data(lmp_tree.folder / "data.slab", cells=(4, 4, 2), at=(0.3, 0.4, 0.28))
     data.write_text(data.read_text().replace("1 atom types", "2 atom types").replace("Masses\n\n1 1", "Masses\n\n1 1\n2 1"))
     text = deck(data, "multi", before="comm_modify mode multi")
     text = text.replace("neighbor 0.3 bin", "neighbor 0.3 multi")
