@@ -144,8 +144,9 @@ void FixGearQuat::init()
   driven_box.init();
   if (ecouple_flag && thermo_energy)
     error->all(FLERR,
-               "Fix gear/quat temp cannot be used with fix_modify energy yes: the scalar has the "
-               "energy of the thermostat, too, which thermo keyword econserve adds; leave it out");
+               "Fix gear/quat {} cannot be used with fix_modify energy yes: the scalar has the "
+               "energy of the thermostat, too, which thermo keyword econserve adds; leave it out",
+               args.thermostat.damp > 0.0 ? args.thermostat.keyword() : "with a pressure");
   other_fixes.init();
   if (!step.had_run()) {
     stated = read_stated(lmp, args.mol);
@@ -467,11 +468,11 @@ void FixGearQuat::set_molecule(int first, tagint /*before*/, int which, double *
 
 void FixGearQuat::write_restart(FILE *fp)
 {
-  if (comm->me != 0) return;
   Fields written;
   double extended = ownership.extended().has_records();
   written(extended);
   step.write(written);
+  if (comm->me != 0) return;
   const auto &numbers = written.numbers();
   const double head[] = {Fields::MAGIC, Fields::FORMAT, (double) numbers.size()};
   const int size = (int) (sizeof(head) + numbers.size() * sizeof(double));

@@ -109,6 +109,7 @@ void Arguments::parse_keywords(int narg, char **arg)
   check_rules();
   check_ranges();
   if (is_on("tolerance", "")) check_control();
+  if (is_on("langevin", "")) check_random();
   check_pressure();
   thermostat.may_wait = !mol.empty();
   if (!infile.empty()) reinit = false;    // values in a file are not recomputed from the atoms
@@ -226,6 +227,16 @@ void Arguments::check_control()
                  "tolerance: the target depends on the number of the step, but steps differ in "
                  "length; use several runs, each with a constant target",
                  pressure.start[k], pressure.stop[k]);
+}
+
+void Arguments::check_random()
+{
+  const double seed = given.at("langevin").numbers[3];
+  if (seed != std::floor(seed) || seed > std::numeric_limits<int>::max())
+    error->all(FLERR, "Fix gear/quat langevin: seed {:g} is not a positive integer", seed);
+  thermostat.seed = (int) seed;
+  scheme.rows = VERLET;
+  automatic_values = false;
 }
 
 /// Directions without a period have no pressure, and tilts can only be free together.

@@ -29,13 +29,17 @@ const KeywordRules &keyword_rules();
 /// The keywords of constant pressure.
 const std::vector<std::string> &pressure_keywords();
 
-/// Values of keywords temp, tchain and thermostat.
+/// Values of keywords temp, tchain and thermostat, or of langevin.
 struct ThermostatWords {
   double start = 0.0, stop = 0.0, damp = 0.0;    ///< damp 0: none
   int length = 0;
   bool separate = false;
+  int seed = 0;             ///< of langevin; 0: chains
   int subtracted = -1;      ///< by fix_modify extra/dof; negative: as the scene is
   bool may_wait = false;    ///< bodies may be inserted later, so a run may start without any
+
+  bool is_random() const { return seed > 0; }
+  const char *keyword() const { return is_random() ? "langevin" : "temp"; }
 };
 
 /// Values of the pressure keywords, for the components xx yy zz yz xz xy.
@@ -91,8 +95,8 @@ struct Arguments : protected Pointers {
   std::vector<MaskWords> masks;
   Isokinetic isokinetic;
   bool rescale;
-  ThermostatWords thermostat;    ///< damp 0: none
-  PressureWords pressure;        ///< no component on: the box does not move
+  ThermostatWords thermostat;
+  PressureWords pressure;    ///< no component on: the box does not move
 
   /// Parses the words after the style.  Any error ends the run on all ranks with a message that
   /// gives the word and the words required.
@@ -126,6 +130,7 @@ struct Arguments : protected Pointers {
   void check_rules() const;
   void check_ranges();
   void check_control();
+  void check_random();
   void check_pressure();
   void check_directions() const;
   void check_coupling() const;

@@ -5,6 +5,7 @@
 
 #include "gear_quat_bath.h"
 
+#include "gear_quat_langevin.h"
 #include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 
@@ -60,7 +61,8 @@ static Scheme scheme_of_bath(Scheme scheme)
 Bath::Bath(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, const Sites &sites) :
     Pointers(lmp), temperature(lmp, fix, bodies, args.thermostat, args.pressure),
     box(lmp, fix, bodies, sites, args.pressure, temperature), bodies(bodies),
-    words(args.thermostat), thermostats(words.damp > 0.0 ? 1 + words.separate : 0),
+    words(args.thermostat),
+    thermostats(words.damp > 0.0 && !words.is_random() ? 1 + words.separate : 0),
     chains(thermostats, Chain(words.length)),
     isokinetic(lmp, bodies, args.isokinetic, args.rescale)
 {
@@ -132,13 +134,15 @@ void Bath::advance(int chain, double twice_kinetic, double h, int values)
 void Bath::begin_run(bool anew, double h)
 {
   if (isokinetic.acts()) isokinetic.begin_run(anew);
-  if (isokinetic.acts() || !acts()) return;
+  if (isokinetic.acts() || !has_temperature()) return;
   box.refuse_scene();
   temperature.begin_run(anew, made.line);
   note_friction();
-  if (thermostats > 0) {
+  if (words.damp > 0.0) {
     refuse_bodies();
     tell_freedoms();
+  }
+  if (thermostats > 0) {
     // a single pass uses only the predicted friction; tolerance limits a step to exactly this many
     const double fewest = (single_pass ? 2.0 : 1.0) * FEWEST_STEPS;
     if (words.damp < (1.0 - ROUNDING) * fewest * std::fabs(h) && comm->me == 0)
@@ -163,19 +167,21 @@ void Bath::refuse_bodies() const
   partly = over_ranks(MPI_MAX, partly, world);
   if (partly)
     error->all(FLERR,
-               "Fix gear/quat temp: keyword torque turns off some components for body {} and not "
+               "Fix gear/quat {}: keyword torque turns off some components for body {} and not "
                "all, so its rotation has no temperature; turn off all three, or define a second "
-               "fix without temp for such bodies",
-               partly);
+               "fix without this keyword for such bodies",
+               words.keyword(), partly);
   if (words.may_wait && bodies.number() == 0) return;
   if (!temperature.has_translation() && temperature.freedoms[ROTATION] == 0.0)
     error->all(FLERR,
-               "Fix gear/quat temp: keywords force and torque turn off all degrees of freedom of "
-               "the bodies, so they have no temperature");
+               "Fix gear/quat {}: keywords force and torque turn off all degrees of freedom of "
+               "the bodies, so they have no temperature",
+               words.keyword());
   if (temperature.freedoms[TRANSLATION] < 0.0)
     error->all(FLERR,
-               "Fix gear/quat temp: fix_modify extra/dof subtracts more degrees of freedom of "
-               "translation than the bodies have");
+               "Fix gear/quat {}: fix_modify extra/dof subtracts more degrees of freedom of "
+               "translation than the bodies have",
+               words.keyword());
 }
 
 void Bath::tell_freedoms()
@@ -261,6 +267,30 @@ Load Bath::acting(int ibody) const
 /* ----------------------------------------------------------------------
    a step
 ------------------------------------------------------------------------- */
+
+void Bath::take_random_step(const Integrator &integrator)
+{
+  if (!words.is_random()) return;
+  temperature.aim(update->ntimestep);
+  if (acts()) measure();
+  const RandomStep step(integrator.step(), words.damp, temperature.line.kt);
+  const int dimension = domain->dimension;
+  for (const auto *list : {&bodies.points, &bodies.tops})
+    for (const int ibody : *list) {
+      const Body &body = bodies.body_at(ibody);
+      std::array<bool, 6> changes;
+      for (int k = 0; k < 3; ++k) {
+        changes[k] = temperature.has(ibody, TRANSLATION, k);
+        changes[3 + k] = temperature.has(ibody, ROTATION) && body.rigid.turns_about(k, dimension);
+      }
+      BodyState &state = bodies.change_state(ibody);
+      const auto normal = normal_numbers(words.seed, update->ntimestep, body.id);
+      const double gained = step.take(body.rigid, changes, normal, state);
+      if (ibody < bodies.nowned()) randomly_taken -= gained;
+      integrator.set_velocities(body.rigid, box.scaled(state), acting(ibody),
+                                bodies.history(ibody));
+    }
+}
 
 void Bath::predict(const Integrator &integrator)
 {
@@ -401,7 +431,7 @@ void Bath::note_step(double h)
 /// The mass of the box changes with the degrees of freedom.
 void Bath::follow_changes(double h)
 {
-  if (isokinetic.acts() || !acts() || temperature.is_counted()) return;
+  if (isokinetic.acts() || !has_temperature() || temperature.is_counted()) return;
   std::vector<ChainTarget> before;
   for (int c = 0; c < thermostats; ++c) before.push_back(target_of(c, 0.0, h));
   const double of_box = box.twice_kinetic();
@@ -589,7 +619,7 @@ void Bath::seed_local(double h, int terms)
 int Bath::elements() const
 {
   if (isokinetic.acts()) return ELEMENTS_OF_ISOKINETIC;
-  return !acts() ? 0 : ELEMENTS + (box.moves() ? (int) Barostat::ELEMENTS : 0);
+  return !has_temperature() ? 0 : ELEMENTS + (box.moves() ? (int) Barostat::ELEMENTS : 0);
 }
 
 bool Bath::extensive(int n) const
@@ -602,6 +632,7 @@ double Bath::energy() const
   double sum = 0.0, of_box = box.moves() ? box.energy(heat.value()) : 0.0;
   for (int c = 0; c < (int) chains.size(); ++c)
     (c < thermostats ? sum : of_box) += chains[c].energy(target_of(c, 0.0, 0.0));
+  sum += over_ranks(MPI_SUM, randomly_taken, world);
   return sum * force->mvv2e + of_box * force->mvv2e;
 }
 
@@ -643,6 +674,11 @@ double Bath::element(int n)
 void Bath::fields(Fields &v)
 {
   if (isokinetic.acts()) v(isokinetic, heat);
+  if (words.is_random()) {
+    double all = v.reads() ? 0.0 : over_ranks(MPI_SUM, randomly_taken, world);
+    v(all);
+    if (v.reads()) randomly_taken = comm->me == 0 ? all : 0.0;
+  }
   if (isokinetic.acts() || !acts()) return;
   v(chains, cold, made, temperature);
   if (box.moves()) v(box, heat);

@@ -3,13 +3,15 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* What acts on all bodies of a fix together, by a friction that depends on sums over all of them:
+/* What acts on all bodies of a fix together, the last three by a friction that depends on sums over
+   all of them:
 
+     keyword langevin      a random step of all momenta between steps (gear_quat_langevin.h)
      keyword temp          Nose-Hoover chains (gear_quat_chain.h), driven by the temperature
      keyword isokinetic    Gauss's principle (gear_quat_isokinetic.h)
      keywords of pressure  a box that moves (gear_quat_barostat.h), with chains or without
 
-   Without these keywords acts() is false, and bodies move by their own loads.
+   Without these three acts() is false, and bodies move by their own loads.
 
    Every step correct() corrects the predicted histories and states of all bodies: in every pass of
    the corrector the sums determine the friction, and the friction determines the next velocities and
@@ -47,6 +49,8 @@ class Bath : protected Pointers {
   Bath(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, const Sites &sites);
 
   bool acts() const { return thermostats > 0 || isokinetic.acts() || box.moves(); }
+  /// A temperature is defined for the bodies, by chains, random steps or a box.
+  bool has_temperature() const { return words.damp > 0.0 || box.moves(); }
   /// False if its variables would be lost in a start.
   bool may_start_anew() const { return !isokinetic.acts(); }
 
@@ -65,6 +69,8 @@ class Bath : protected Pointers {
 
   // in a step
 
+  /// Random changes of momenta, before the step of the integrator.
+  void take_random_step(const Integrator &integrator);
   /// Histories are predicted.
   void predict(const Integrator &integrator);
   /// Computes friction and rates from the present states and loads.
@@ -110,7 +116,7 @@ class Bath : protected Pointers {
   double element(int n);
   /// True if the element is proportional to the number of bodies.
   bool extensive(int n) const;
-  /// The energy that chains and box have taken from the bodies.  Local.
+  /// The energy that random steps, chains and box have taken from the bodies.
   double energy() const;
 
   void fields(Fields &v);
@@ -126,6 +132,7 @@ class Bath : protected Pointers {
   const int thermostats;              ///< number of chains: of both parts, or one for both
   std::vector<Chain> chains, kept;    ///< the last one is that of the box, if it has one
   IsokineticConstraint isokinetic;
+  double randomly_taken = 0.0;      ///< energy, from bodies that this rank owns
   ScalarHistory heat, kept_heat;    ///< removed by isokinetic, or S of the box
   int values_of_heat = 0;
   CorrectorCoefficients::Array coefficients_of_heat;    ///< of a first-order equation

@@ -61,8 +61,8 @@ void DrivenBox::init()
       (args.thermostat.damp > 0.0 || args.isokinetic != Isokinetic::NONE))
     error->all(FLERR,
                "Fix gear/quat: the velocities of bodies contain the flow of fix deform remap v, "
-               "which is not thermal motion; leave out keywords temp and isokinetic, or use "
-               "remap x");
+               "which is not thermal motion; leave out keywords temp, langevin and "
+               "isokinetic, or use remap x");
 }
 
 /* ----------------------------------------------------------------------

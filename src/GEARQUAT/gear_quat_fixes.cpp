@@ -52,11 +52,10 @@ void OtherFixes::init()
     if (other == fix || (!row && !heats)) continue;
     const tagint atom = shared_atom(lmp, ownership, other);
     if (heats && atom)
-      error->all(
-          FLERR,
-          "Fix gear/quat temp is a thermostat of the bodies, and fix {} ({}) is another one; "
-          "leave out one of the two, or give the other one a group without atoms of bodies",
-          other->id, other->style);
+      error->all(FLERR,
+                 "Fix gear/quat {} is a thermostat of the bodies, and fix {} ({}) is another one; "
+                 "leave out one of the two, or give the other one a group without atoms of bodies",
+                 args.thermostat.keyword(), other->id, other->style);
     if (!row) continue;
     if (row->is(Fact::TEMPERATURE | Fact::MOMENTUM)) {
       taken.push_back(other);

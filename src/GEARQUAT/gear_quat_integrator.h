@@ -59,7 +59,7 @@ class Integrator : public Kinematics {
   /// Uses the given coefficients, as many as in the scheme.
   Integrator(const Scheme &scheme, double h, const CorrectorCoefficients &coefficients) :
       Kinematics(scheme, h), n(scheme.values()),
-      turning(n - 1, std::max(scheme.order(), LEAST_ORDER),
+      turning(scheme.is_verlet() ? 1 : n - 1, std::max(scheme.order(), LEAST_ORDER),
               std::pow(10.0, scheme.remembers ? -15 : -std::min(15, n + 8))),
       corrector(coefficients)
   {
@@ -272,6 +272,14 @@ class Integrator : public Kinematics {
   {
     const double *first[Turn::LANES];
     for (int body = 0; body < count; ++body) first[body] = rows[body] + Scheme::SECOND_QUATERNION;
+    // velocity Verlet turns bodies with the angular momentum of half a step, so it is symmetric in time
+    double half[Turn::LANES][2 * Scheme::SECOND_WIDTH];
+    for (int body = 0; body < count && scheme.is_verlet(); ++body) {
+      std::copy_n(first[body], 2 * Scheme::SECOND_WIDTH, half[body]);
+      for (int i = 0; i < 3; ++i)
+        half[body][Scheme::SECOND_WIDTH + i] += first[body][2 * Scheme::SECOND_WIDTH + i];
+      first[body] = half[body];
+    }
     turning.changes(count, bodies, first, Scheme::SECOND_WIDTH, turned);
     for (int body = 0; body < count && scheme.remembers; ++body)
       turning.change_in_parts(*bodies[body], first[body], Scheme::SECOND_WIDTH, turned[body]);

@@ -23,6 +23,11 @@ const KeywordTable &GearQuat::keyword_table()
   static const std::vector<std::string> FLAGS = {"M", "xflag", "yflag", "zflag"};
   static const std::vector<std::string> TEMPERATURES = {"Tstart", "Tstop", "Tdamp"};
   static const std::vector<std::string> PRESSURES = {"Pstart", "Pstop", "Pdamp"};
+  static const auto set_temperature = [](A &a, const V &v) {
+    a.thermostat.start = v.numbers[0];
+    a.thermostat.stop = v.numbers[1];
+    a.thermostat.damp = v.numbers[2];
+  };
   static const auto pressure = [](const char *name, void (*store)(A &, const V &), const char *meaning) {
     return K{name, PHYSICS, K::NUMBERS, PRESSURES, store, meaning, {}, {}, 2};
   };
@@ -83,11 +88,11 @@ const KeywordTable &GearQuat::keyword_table()
     {"rescale", PHYSICS, K::WORD, {"yes", "no"}, [](A &a, const V &v) { a.rescale = v.is("yes"); },
      "whether momenta are scaled to exactly that energy"},
     {"temp", PHYSICS, K::NUMBERS, TEMPERATURES,
-     [](A &a, const V &v) {
-       a.thermostat.start = v.numbers[0];
-       a.thermostat.stop = v.numbers[1];
-       a.thermostat.damp = v.numbers[2];
-     }, "the temperature of all bodies, at the beginning and at the end of a run"},
+     [](A &a, const V &v) { set_temperature(a, v); },
+     "the temperature of all bodies, at the beginning and at the end of a run"},
+    {"langevin", PHYSICS, K::NUMBERS, {"Tstart", "Tstop", "Tdamp", "seed"},
+     [](A &a, const V &v) { set_temperature(a, v); },
+     "the temperature of random forces and of the friction 1/Tdamp on all momenta"},
     {"tchain", PHYSICS, K::INTEGER, {}, [](A &a, const V &v) { a.thermostat.length = v.integer; },
      "how many variables a thermostat has", {{1, Chain::LONGEST, 3}}},
     {"thermostat", PHYSICS, K::WORD, {"total", "separate"},
@@ -187,6 +192,10 @@ const KeywordRules &GearQuat::keyword_rules()
     {{"rescale"}, "", R::REQUIRE, {"isokinetic"}, {}, ""},
     {{"temp"}, "", R::EXCLUDE, {"isokinetic"}, {},
      "both keep the kinetic energy of the bodies; leave out one of the two"},
+    {{"langevin"}, "", R::REQUIRE, {"formulation"}, {"momentum", "second"}, "they have velocity Verlet"},
+    {{"langevin"}, "", R::EXCLUDE, {"temp", "isokinetic"}, {}, "each determines the temperature; leave out one of the two"},
+    {{"langevin"}, "", R::EXCLUDE, {"values", "corrector", "tolerance", "c0"}, {},
+     "between random steps bodies move by velocity Verlet"},
     {{"tchain", "thermostat"}, "", R::REQUIRE, {"temp"}, {}, ""},
     {PRESSURE, "", R::EXCLUDE, {"isokinetic"}, {}, "constant kinetic energy needs a constant box"},
     {PRESSURE, "", R::EXCLUDE, {"mol"}, {}, "with a moving box it is not possible yet"},
@@ -197,7 +206,7 @@ const KeywordRules &GearQuat::keyword_rules()
     {{"tri", "xy", "xz", "yz"}, "", R::EXCLUDE, {"couple"}, {}, "edges of a box that shears change independently"},
     {{"couple"}, "", R::REQUIRE, {"aniso", "x", "y", "z"}, {}, ""},
     {{"pchain", "ptemp", "flip", "dilate", "fixedpoint"}, "", R::REQUIRE, PRESSURE, {}, ""},
-    {{"ptemp"}, "", R::EXCLUDE, {"temp"}, {}, "the temperature of temp determines the mass of the box"},
+    {{"ptemp"}, "", R::EXCLUDE, {"temp", "langevin"}, {}, "their temperature determines the mass of the box"},
   };
   return rules;
 }

@@ -25,8 +25,6 @@ static constexpr char SCALED_TILT[] = "the tilts xy and xz scale with the edge a
 
 /// doc/howto/from_rigid.md has the same table.
 static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGID_WORDS = {
-    {{"langevin"},
-     "define fix langevin on the same group, and leave out keywords values and corrector"},
     {{"tparam"}, "a thermostat is integrated with the bodies, without iterations; leave it out"},
     {{"pparam"}, "a barostat is integrated with the bodies, without iterations; leave it out"},
     {{"scalexy", "scalexz", "scaleyz"}, SCALED_TILT},

@@ -88,7 +88,12 @@ void GearQuat::add_citations(LAMMPS *lmp, const Arguments &args)
                  "Anthony J. C. Ladd",
                  "Nonequilibrium Molecular Dynamics via {Gauss's} Principle of Least Constraint",
                  "Physical Review A", 1983, 28, "1016--1021"));
-  if (args.thermostat.damp > 0.0)
+  if (args.thermostat.is_random())
+    cite(" langevin: Langevin dynamics of rigid bodies: https://doi.org/10.1063/1.4916312",
+         article("Davidchack2015", "R. L. Davidchack and T. E. Ouldridge and M. V. Tretyakov",
+                 "New {Langevin} and gradient thermostats for rigid body dynamics",
+                 "Journal of Chemical Physics", 2015, 142, "144114"));
+  else if (args.thermostat.damp > 0.0)
     cite(" temp: chains of thermostats: https://doi.org/10.1063/1.463940",
          article("Martyna1992", "Glenn J. Martyna and Michael L. Klein and Mark Tuckerman",
                  "{Nos\\'e--Hoover} Chains: The Canonical Ensemble via Continuous Dynamics",
@@ -252,6 +257,9 @@ std::string Report::effects() const
   const bool isokinetic = args.isokinetic != Isokinetic::NONE;
   if (temp.damp == 0.0)
     row("isokinetic", isokinetic, isokinetic ? "keyword isokinetic" : "isokinetic none");
+  else if (temp.is_random())
+    row("thermostat", true,
+        fmt::format("langevin {:g} {:g} {:g} {}", temp.start, temp.stop, temp.damp, temp.seed));
   else
     row("thermostat", true,
         fmt::format("temp {:g} {:g} {:g}, tchain {}, {}", temp.start, temp.stop, temp.damp,

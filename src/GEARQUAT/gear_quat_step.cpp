@@ -363,7 +363,9 @@ Step::Settings Step::settings() const
           (double) scheme.compensate,
           (double) scheme.remembers,
           (double) args.isokinetic,
-          temp.damp > 0.0 ? 1.0 + temp.separate : 0.0,
+          temp.is_random()      ? 3.0
+              : temp.damp > 0.0 ? 1.0 + temp.separate
+                                : 0.0,
           (double) temp.length,
           (double) components,
           (double) box.length,
@@ -603,6 +605,7 @@ void Step::begin(int vflag, double **f)
   others.watch_velocities(phase == Phase::BETWEEN);    // in a run with `pre no` of all sites
   if (tolerance) tolerance->begin_step();
   if (tolerance) bath.keep();
+  bath.take_random_step(*integrator);
   predict(f);
   place_prediction();
   phase = Phase::BEGUN;

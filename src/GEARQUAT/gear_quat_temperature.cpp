@@ -38,10 +38,10 @@ static constexpr double LARGE_MOMENTA = 1024.0;    // 2^10
 Temperature::Temperature(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
                          const ThermostatWords &words, const PressureWords &pressure) :
     Pointers(lmp),
-    subtracted(words.subtracted), fix(fix), bodies(bodies),
+    subtracted(words.subtracted), fix(fix), bodies(bodies), words(words),
     start(words.damp > 0.0 ? words.start : pressure.temperature),
     stop(words.damp > 0.0 ? words.stop : pressure.temperature), of_bodies(start == 0.0),
-    insertions(words.may_wait), of_pressure(pressure.any())
+    of_pressure(pressure.any())
 {
 }
 
@@ -112,12 +112,14 @@ bigint Temperature::atoms_outside() const
 
 std::string Temperature::find_outside() const
 {
+  if (words.is_random()) return "keyword langevin exerts random forces";
   const bigint others = atoms_outside();
   if (others > 0) return fmt::format("{} atoms are in no body of this fix", others);
   const auto with_forces = fixes_with_forces(lmp, fix);
   if (!with_forces.empty()) return name_of(with_forces.front()) + " may exert forces";
   for (const auto *other : modify->get_fix_list())
-    if (!insertions && known(Fact::EXCHANGE, other)) return name_of(other) + " may insert atoms";
+    if (!words.may_wait && known(Fact::EXCHANGE, other))
+      return name_of(other) + " may insert atoms";
   if (known_pair(Fact::BACKGROUND, lmp->force))
     return std::string("pair style ") + lmp->force->pair_style + " exerts forces from outside";
   return "";

@@ -104,9 +104,9 @@ class Temperature : protected Pointers {
  private:
   const Fix *fix;
   const Bodies &bodies;
+  const ThermostatWords &words;
   double start, stop;       ///< the target of a run
   const bool of_bodies;     ///< no keyword states a temperature
-  const bool insertions;    ///< what other fixes insert are bodies of this fix
   const bool of_pressure;
 
   bool constant[3] = {}, stated = false;

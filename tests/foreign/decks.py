@@ -38,12 +38,7 @@ REASONS = (
         "pressure with r-RESPA, or another order of fixes",
         r"run_style \*respa\* are refused with a pressure",
     ),
-    (
-        r"keyword langevin of the rigid fixes",
-        "keyword langevin",
-        r"Keywords such as \*langevin\*",
-    ),
-    (r"keyword gravity of the rigid fixes", "keyword gravity", r"\*gravity\* are refused"),
+    (r"keyword gravity of the rigid fixes", "keyword gravity", r"\*gravity\* and"),
     (r"bodyforces early", "bodyforces early", r"\*Fix_modify bodyforces\* is always \*late\*"),
     (
         r"has no fix_modify temp",

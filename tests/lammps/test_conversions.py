@@ -16,7 +16,6 @@ VALUES = {"langevin": 4, "temp": 3, "tchain": 1, "tparam": 3, "pparam": 3, "iso"
 VALUES |= {"couple": 1, "pchain": 1, "dilate": 1, "infile": 1, "mol": 1, "reinit": 1, "force": 4, "torque": 4, "gravity": 1}
 #: the remark of a row "not there" -> what replaces the keyword, with its group and values
 INSTEAD = {
-    "use `fix langevin` on the same group": "fix bath_{ID} {group} langevin {values}",
     "leave them out": "",
     "leave it out": "",
     "use `fix gravity`": "",
@@ -353,7 +352,7 @@ fix 3 all deform 1 xy erate 0.05 remap v
 thermo 50
 run 100
 """,
-        "leave out keywords temp and isokinetic", ("gear/quat molecule temp 1.0 1.0 0.5", "gear/quat molecule"),
+        "leave out keywords temp, langevin and isokinetic", ("gear/quat molecule temp 1.0 1.0 0.5", "gear/quat molecule"),
     ),
     "constant pressure in a heat bath": (
         BODIES

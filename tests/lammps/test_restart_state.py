@@ -18,7 +18,7 @@ MAGIC = struct.pack("d", float(int.from_bytes(b"gearquat", "big")))
 STEPS, MORE = 60, 20
 
 TEMP, SEPARATE = "temp 0.7 0.7 0.8", "temp 0.6 0.9 0.8 thermostat separate tchain 2"
-TOLERANCE = "tolerance 1e-6"
+TOLERANCE, LANGEVIN = "tolerance 1e-6", "langevin 0.7 0.9 0.2 4711"
 MODES = [
     "",
     "values 7 compensate yes",
@@ -35,8 +35,11 @@ MODES = [
     f"iso 0.3 0.3 0.5 {TOLERANCE} energy",
     f"aniso 0.3 0.3 0.5 {TEMP} {TOLERANCE}",
     f"tri 0.3 0.3 1.0 {SEPARATE}",
+    LANGEVIN,
+    f"iso 0.3 0.9 1.0 {LANGEVIN}",
 ]
 CASES = [(f"formulation {f}", mode) for f in FORMULATIONS for mode in MODES if f == "first" or "isokinetic" not in mode]
+CASES = [(f, mode) for f, mode in CASES if LANGEVIN not in mode or "first" not in f]
 CASES = [("" if TOLERANCE in mode else f, mode) for f, mode in CASES if TOLERANCE not in mode or "first" in f]
 SPAN = f"start 0 stop {STEPS + MORE}"
 
@@ -172,7 +175,7 @@ NOT_IN_A_FILE = {
         MESSAGES: "warned_held told",
     },
     "temperature Temperature": {
-        COMMAND: "subtracted stop of_bodies insertions of_pressure",
+        COMMAND: "subtracted stop of_bodies words of_pressure",
         OTHERS: "fix bodies",
         DERIVED: "line freedoms",
         RUN: "constant stated outside of_total count_of mass changes natoms",
