@@ -157,7 +157,7 @@ ARGUMENTS = {
     "molecule iso 1 1 1 pchain -1": "pchain: -1 is not from 0 to 10",
     "molecule iso 1 1 1 flip maybe": "flip: unknown value maybe (yes or no)",
     "molecule iso 1 1 1 ptemp 0": "ptemp: 0 is not a positive number",
-    "molecule iso 1 1 1 temp 1 1 0.1 ptemp 1": "keyword ptemp cannot be used with temp: the temperature of temp",
+    "molecule iso 1 1 1 temp 1 1 0.1 ptemp 1": "keyword ptemp cannot be used with temp: their temperature",
     "molecule tri 1 1 1 force * on on off": "keyword force cannot be used with tri: in a box that shears",
     "molecule iso 1 1 1 mol some": "keyword iso cannot be used with mol: with a moving box",
     "molecule iso 1 2 1 tolerance 1e-8": "Pstart 1 and Pstop 2 differ, which cannot be used with tolerance",

@@ -38,6 +38,7 @@ TRIED = {
     "a body with a single atom": ("set atom 1 mol 3", "molecule", "run 1", ""),
     "mol": "test_coming_and_going.py",
     "force": ("", "molecule force 1 off off off torque 2* off off on", "run 1", ""),
+    "langevin": "test_langevin.py",
     "temp": "test_thermostat.py",
     "tparam": ("", "molecule {word} 3 2 3", "", "a thermostat is integrated with the bodies"),
     "iso": "test_pressure.py",

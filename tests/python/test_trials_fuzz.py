@@ -84,7 +84,7 @@ def test_trial_lines_are_lines_that_lammps_takes(accepts, make):
             assert any(
                 word in str(error) for word in ("keyword langevin", "keyword gravity")
             ), error
-            assert make is rigid
+            assert make is rigid or "langevin" in str(error)
             seen["refused"] += 1
             continue
         seen["translated"] += 1

@@ -291,18 +291,8 @@ def parse_fix(words):
     return FixLine(id_, group, style, body, tuple(given))
 
 
-def _refuse_random(line):
-    """Raises DeckError for keyword langevin."""
-    if "langevin" in dict(line.keywords):
-        raise DeckError(
-            f"fix {line.id} {line.style}, keyword langevin: its forces are random, so there is no trajectory to compare:"
-            " leave it out, or measure another run with --run N"
-        )
-
-
 def for_trials(line):
     """The line of a deck in the form used by its trials: (FixLine, notes)."""
-    _refuse_random(line)
     if line.style != "gear/quat":
         return line, []
     kept = line.only("integration", *_PHYSICAL, "output")
@@ -333,7 +323,11 @@ def translate(line):
 
     Raises DeckError for keywords that fix gear/quat does not have.
     """
-    _refuse_random(line)
+    if "langevin" in dict(line.keywords):
+        raise DeckError(
+            f"fix {line.id} {line.style}, keyword langevin: its forces are random, so there is no trajectory to compare:"
+            " leave it out, or measure another run with --run N"
+        )
     if line.style == "gear/quat":
         return line.only(*_PHYSICAL), []
     style, who, notes = base_style(line.style), f"fix {line.id} {line.style}", []
