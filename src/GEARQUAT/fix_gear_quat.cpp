@@ -218,7 +218,6 @@ void FixGearQuat::setup(int vflag)
   bodies.forget_work();    // positions belong to the corrected poses
   tally_virial(vflag, atom->f);
   show_bodies();
-  if (first) warn_of_excluded_images(lmp, this, bodies, sites);
   if (first) report_scene(lmp, this, args, fleet, bodies, ownership, sites);
   atoms_are_free = false;
 }

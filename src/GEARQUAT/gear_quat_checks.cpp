@@ -21,8 +21,6 @@
 #include "force.h"
 #include "group.h"
 #include "modify.h"
-#include "neighbor.h"
-#include "pair.h"
 #include "update.h"
 #include "utils.h"
 
@@ -77,23 +75,6 @@ static void refuse_other_integrators(LAMMPS *lmp, const Fix *fix, const Fleet &f
   }
 }
 
-/// Granular walls request the masses of bodies only from the first rigid fix; pair styles refuse a
-/// second rigid fix.
-static void warn_of_walls(LAMMPS *lmp, const Fix *fix)
-{
-  const Fix *first = nullptr;
-  for (const auto *other : lmp->modify->get_fix_list())
-    if (!first && other->rigid_flag) first = other;
-  if (first == fix || lmp->comm->me != 0) return;
-  for (const auto *other : lmp->modify->get_fix_list())
-    if (known(Fact::FIRST_RIGID, other))
-      lmp->error->warning(FLERR,
-                          "Fix gear/quat: fix {} ({}) uses the bodies of fix {} only and damps "
-                          "contacts of the bodies of fix {} with the masses of atoms; use one fix "
-                          "for all bodies",
-                          other->id, other->style, first->id, fix->id);
-}
-
 void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
                             const Ownership &ownership)
 {
@@ -103,7 +84,6 @@ void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
                     lmp->update->dt);
   if (steps) refuse_respa_with_steps(lmp);
   refuse_other_integrators(lmp, fix, fleet, ownership);
-  warn_of_walls(lmp, fix);
 }
 
 /* ----------------------------------------------------------------------
@@ -288,51 +268,6 @@ void GearQuat::warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Argu
                         "Fix gear/quat: molecules such as {} are only partly in bodies, and no fix "
                         "moves the rest; if all of these atoms are to move as rigid molecules, {}",
                         example, remedy(lmp, fix, args));
-}
-
-/* ----------------------------------------------------------------------
-   bodies that meet their own images
-------------------------------------------------------------------------- */
-
-/// As NPair::exclusion(), for an atom and its image.
-static bool is_excluded(const LAMMPS *lmp, int i)
-{
-  const Neighbor *list = lmp->neighbor;
-  const int mask = lmp->atom->mask[i], type = lmp->atom->type[i];
-  if (list->nex_type && list->ex_type[type][type]) return true;
-  for (int m = 0; m < list->nex_group; ++m)
-    if (mask & list->ex1_bit[m] && mask & list->ex2_bit[m]) return true;
-  for (int m = 0; m < list->nex_mol; ++m)
-    if (mask & list->ex_mol_bit[m] && list->ex_mol_intra[m] != 0) return true;
-  return false;
-}
-
-void GearQuat::warn_of_excluded_images(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
-                                       const Sites &sites)
-{
-  const Force *force = lmp->force;
-  if (!lmp->neighbor->exclude || !exerts_forces(force->pair, force->pair_style)) return;
-  tagint found = 0;
-  for (const Site &site : sites) {
-    const Body &body = bodies.body_at(site.body);
-    if (body.rigid.rotational_freedoms() == 0 || (body.off & torque_off(2))) continue;
-    double x[3], place[3];
-    sites.unwrapped(site, x, place);
-    for (int k = 0; k < lmp->domain->dimension; ++k) {
-      const double span = 2.0 * std::fabs(place[k] - bodies.state_of(site.body).center[k]);
-      if (lmp->domain->periodicity[k] && span + force->pair->cutforce >= lmp->domain->prd[k] &&
-          is_excluded(lmp, site.atom))
-        found = body.id;
-    }
-  }
-  found = over_ranks(MPI_MAX, found, lmp->world);
-  if (found && lmp->comm->me == 0)
-    lmp->error->warning(FLERR,
-                        "Fix gear/quat {}: body {} is so long that it may meet its own periodic "
-                        "images, and neigh_modify exclude leaves out these pairs too, which would "
-                        "turn it; do not exclude its pairs, use a larger box, or switch its "
-                        "torque off",
-                        fix->id, found);
 }
 
 /// Bodies are the molecules at the definition of the fix.

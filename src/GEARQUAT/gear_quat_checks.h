@@ -18,13 +18,11 @@ namespace LAMMPS_NS::GearQuat {
 
 class Bodies;
 class Ownership;
-class Sites;
 struct Arguments;
 struct Fleet;
 
 /// Ends the run on all ranks with a reason: a time step of zero, r-RESPA with different steps,
-/// atoms of an unsupported kind, or atoms that another fix moves too.  Warns of granular walls that
-/// do not use the masses of the bodies.
+/// atoms of an unsupported kind, or atoms that another fix moves too.
 void refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Ownership &ownership);
 
 // when bodies have been made from atoms
@@ -44,9 +42,6 @@ void warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Arguments &arg
 /// Warns if molecule IDs have changed since the bodies were made from them.  Returns true then.
 bool warn_of_molecule_ids(LAMMPS *lmp, const Fix *fix, const Arguments &args,
                           const Ownership &ownership);
-/// Warns of bodies so long that they may meet their own periodic images, if neigh_modify exclude
-/// leaves out these pairs too, which turn them.
-void warn_of_excluded_images(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, const Sites &sites);
 
 }    // namespace LAMMPS_NS::GearQuat
 

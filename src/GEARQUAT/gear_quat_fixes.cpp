@@ -48,7 +48,7 @@ void OtherFixes::init()
   warn_of_noise();
   for (auto *other : modify->get_fix_list()) {
     const Style *row = known(Fact::ON_ATOMS, other);
-    const bool heats = args.thermostat.damp > 0.0 && known(Fact::THERMOSTAT, other);
+    const bool heats = args.thermostat.damp > 0.0 && other->ecouple_flag && !other->time_integrate;
     if (other == fix || (!row && !heats)) continue;
     const tagint atom = shared_atom(lmp, ownership, other);
     if (heats && atom)

@@ -18,7 +18,6 @@
 #include "fix.h"
 #include "force.h"
 #include "improper.h"
-#include "info.h"
 #include "kspace.h"
 #include "memory.h"
 #include "modify.h"
@@ -48,7 +47,6 @@ Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(l
 {
   look_at_styles();
   if (why.empty()) look_at_fixes(owners);
-  if (why.empty()) look_at_variables();
   if (why.empty()) look_at_time();
   post_force.clear();    // and those of the owners, in the order of LAMMPS
   for (auto *fix : modify->get_fix_list())
@@ -60,8 +58,8 @@ void Forces::look_at_styles()
   if (lmp->kokkos) why = "the KOKKOS package is on";
   if (const Style *style = known_run_style(Fact::UNREPEATABLE, update->integrate_style))
     why = fmt::format("run style {} {}", update->integrate_style, style->reason);
-  if (const Style *style = known_bond(Fact::UNREPEATABLE, force))
-    why = fmt::format("bonds of style {} may break or change for good", style->pattern);
+  if (force->bond && force->bond->partial_flag)
+    why = fmt::format("bonds of style {} may break", force->bond_style);
   if (known_pair(Fact::UNREPEATABLE, force))
     why = fmt::format("pair style {} draws random numbers or has a memory", force->pair_style);
 }
@@ -85,32 +83,6 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
     else if (mask & during_force)
       why = name_of(fix) + " acts on forces in a way that cannot be followed";
     if (!why.empty()) return;
-  }
-}
-
-/// The name of a style whose force may depend on a variable, empty for none.
-std::string Forces::reader_of_variables() const
-{
-  if (known_pair(Fact::READS_VARIABLES, force))
-    return fmt::format("pair style {}", force->pair_style);
-  for (const auto *fix : post_force)
-    if (!known(Fact::WITHOUT_VARIABLES, fix)) return name_of(fix);
-  return "";
-}
-
-/// A variable that draws random numbers or counts must not be evaluated more often than without
-/// this fix.
-void Forces::look_at_variables()
-{
-  const std::string reader = reader_of_variables();
-  if (reader.empty()) return;
-  Info info(lmp);
-  int number = 0;
-  const auto names = info.get_variable_names(number);
-  for (int i = 0; i < number; ++i) {
-    if (is_unrepeatable(info.get_variable_info(i)))
-      why = fmt::format("{} may read variable {}, which has another value in each evaluation",
-                        reader, names[i]);
   }
 }
 

@@ -87,8 +87,6 @@ class Forces : protected Pointers {
 
   void look_at_styles();
   void look_at_fixes(const std::vector<const Fix *> &owners);
-  std::string reader_of_variables() const;
-  void look_at_variables();
   void look_at_time();
   void evaluate_at(bigint step, bool of_fixes);
   void clear();

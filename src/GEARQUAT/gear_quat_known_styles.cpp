@@ -6,6 +6,7 @@
 #include "gear_quat_known_styles.h"
 
 #include "atom.h"
+#include "bond.h"
 #include "comm.h"
 #include "compute.h"
 #include "fix.h"
@@ -44,18 +45,6 @@ static constexpr Style PAIRS[] = {
     {"^lubricate", DISSIPATIVE | BACKGROUND, "friction of the fluid between particles"},
     {"^sph", DISSIPATIVE, "viscosity"},
     {"^mesocnt/viscous", DISSIPATIVE, "friction between tubes"},
-    {"^hybrid/scaled", READS_VARIABLES, "factors of its styles are numbers or variables"},
-};
-
-// whole names, as compared by Force::bond_match()
-
-static constexpr Style BONDS_OF_ATOMS[] = {
-    {"quartic", UNREPEATABLE, "sets the type of a broken bond to 0"},
-    {"quartic/omp", UNREPEATABLE, "as quartic"},
-    {"bpm/rotational", UNREPEATABLE, "breaks bonds, and keeps their reference state"},
-    {"bpm/spring", UNREPEATABLE, "breaks bonds, and keeps their reference length"},
-    {"bpm/spring/plastic", UNREPEATABLE, "as bpm/spring, and reference lengths yield"},
-    {"rheo/shell", UNREPEATABLE, "makes bonds after a time of contact, and breaks them"},
 };
 
 static constexpr Style RUN_STYLES[] = {
@@ -74,16 +63,16 @@ static constexpr char ONE[] = "unfix one of the two";
 static constexpr Style FIXES[] = {
     {"^addforce", REPEATABLE, "constants, or variables of positions and the time"},
     {"^efield", REPEATABLE, "charges and dipoles in a field of constants, variables or positions"},
-    {"^enforce2d", REPEATABLE | WITHOUT_VARIABLES | NO_FORCE, "sets components along z to 0"},
-    {"^freeze$", REPEATABLE | WITHOUT_VARIABLES, "sets forces and torques to 0"},
+    {"^enforce2d", REPEATABLE | NO_FORCE, "sets components along z to 0"},
+    {"^freeze$", REPEATABLE, "sets forces and torques to 0"},
     {"^gravity", REPEATABLE, "mass times a constant or variable"},
     {"^indent$", REPEATABLE, "a function of positions and variables"},
-    {"^lineforce", REPEATABLE | WITHOUT_VARIABLES, "removes components"},
-    {"^planeforce", REPEATABLE | WITHOUT_VARIABLES, "removes a component"},
+    {"^lineforce", REPEATABLE, "removes components"},
+    {"^planeforce", REPEATABLE, "removes a component"},
     {"^setforce", REPEATABLE, "constants, or variables of positions and the time"},
-    {"^spring$", REPEATABLE | WITHOUT_VARIABLES, "a function of centers of mass"},
+    {"^spring$", REPEATABLE, "a function of centers of mass"},
     {"^spring/self", REPEATABLE, "a function of present and initial positions"},
-    {"^viscous$", REPEATABLE | WITHOUT_VARIABLES, "a function of velocities"},
+    {"^viscous$", REPEATABLE, "a function of velocities"},
     {"^wall/harmonic", REPEATABLE, "a function of positions and the place of the wall"},
     {"^wall/lj", REPEATABLE, "as wall/harmonic: wall/lj93, wall/lj126 and wall/lj1043"},
     {"^wall/morse", REPEATABLE, "as wall/harmonic"},
@@ -96,18 +85,16 @@ static constexpr Style FIXES[] = {
     {"^nonaffine/displacement", NO_FORCE, "reads positions"},
     {"^INTEL", NO_FORCE, "adds up what threads have computed"},
     {"^GPU", NO_FORCE, "receives what a device has computed"},
-    {"^langevin", RANDOM | THERMOSTAT | SINGLE | AT_INTEGRATION,
-     "with gjf it also changes velocities", "leave out its keyword gjf"},
+    {"^langevin", RANDOM | SINGLE | AT_INTEGRATION, "with gjf it also changes velocities",
+     "leave out its keyword gjf"},
     {"^brownian", RANDOM, "random displacements, and it integrates itself"},
-    {"^gle", RANDOM | THERMOSTAT, "random changes of velocities with memory"},
-    {"^gld", RANDOM | THERMOSTAT, "random forces with memory, and it integrates itself"},
+    {"^gle", RANDOM, "random changes of velocities with memory"},
+    {"^gld", RANDOM, "random forces with memory, and it integrates itself"},
     {"^ttm", RANDOM, "random forces by the temperature of electrons"},
     {"^qtb", RANDOM, "random forces with memory, with friction"},
     {"^srd", RANDOM | BESIDE_GROUP, "collisions with atoms of another group, each in a step"},
-    {"^wall/gran", DISSIPATIVE | FIRST_RIGID,
-     "contacts; init() stops at the first fix with rigid_flag"},
+    {"^wall/gran", DISSIPATIVE, "friction of contacts"},
     {"^damping/cundall", DISSIPATIVE, "its forces change sign with velocities"},
-    {"^temp/", THERMOSTAT, "scales velocities, or mixes them with random ones"},
     {"^dt/reset", TIME_STEP, "sets update->dt by velocities and forces"},
     {"^rigid", BODY_OF_ATOMS, "FixRigid::extract(); of rigid/small it is filled after init()"},
     {"^deform", CARRIES_BODIES, "with remap x; with v and none no atom is moved"},
@@ -130,7 +117,7 @@ static constexpr Style FIXES[] = {
     {"^wall/piston$", REFLECTION, "as wall/reflect", WALL},
     {"^temp/csld", SINGLE, "mixes each velocity with a random one", TEMP},
     {"^temp/rescale/eff", SINGLE, "scales radial velocities of electrons, too", TEMP},
-    {"^lambda_thermostat", SINGLE | THERMOSTAT, "changes some velocities at a time", TEMP},
+    {"^lambda_thermostat", SINGLE, "changes some velocities at a time", TEMP},
     {"^ehex", SINGLE, "displaces atoms besides scaling velocities",
      "use fix heat without a region, on groups of whole bodies"},
     {"^thermal/conductivity", SINGLE, "exchanges the energies of two atoms", GROUP},
@@ -164,11 +151,6 @@ static constexpr Style FIXES[] = {
     {"^ipi", SINGLE | ANY, "takes positions and the box from a server", ONE},
 };
 
-// they draw a number, take the next value of an atomfile or file variable, or call Python
-
-static constexpr const char *UNREPEATABLE_VARIABLES[] = {"random(", "normal(", "next(", "py_",
-                                                         "style = python"};
-
 /* ----------------------------------------------------------------------
    matching
 ------------------------------------------------------------------------- */
@@ -195,13 +177,6 @@ const Style *GearQuat::known_pair(unsigned any_of, const Force *force)
   });
 }
 
-const Style *GearQuat::known_bond(unsigned any_of, const Force *force)
-{
-  return find(BONDS_OF_ATOMS, any_of, [force](const char *name) {
-    return const_cast<Force *>(force)->bond_match(name) != nullptr;
-  });
-}
-
 const Style *GearQuat::known_run_style(unsigned any_of, const std::string &style)
 {
   return find(RUN_STYLES, any_of, [&style](const char *pattern) {
@@ -213,13 +188,6 @@ const Style *GearQuat::known_run_style(unsigned any_of, const std::string &style
 bool GearQuat::adds_up(const Compute *compute)
 {
   return utils::strmatch(compute->style, "/tally");
-}
-
-bool GearQuat::is_unrepeatable(const std::string &variable)
-{
-  for (const auto *word : UNREPEATABLE_VARIABLES)
-    if (variable.find(word) != std::string::npos) return true;
-  return false;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -295,8 +263,7 @@ std::vector<std::string> GearQuat::repeatable_forces(LAMMPS *lmp)
   };
   if (force->pair)
     add(fmt::format("pair style {}", force->pair_style), !known_pair(UNREPEATABLE, force));
-  if (force->bond)
-    add(fmt::format("bond style {}", force->bond_style), !known_bond(UNREPEATABLE, force));
+  if (force->bond) add(fmt::format("bond style {}", force->bond_style), !force->bond->partial_flag);
   for (auto *fix : lmp->modify->get_fix_list())
     if (!fix->time_integrate && (lmp->modify->get_fix_mask(fix) & POST_FORCE))
       add(name_of(fix), known(REPEATABLE, fix));

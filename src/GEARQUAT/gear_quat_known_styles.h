@@ -28,31 +28,27 @@ namespace Fact {
     RANDOM = 1 << 1,          ///< they, or the changes of velocities of a fix, are random
     DISSIPATIVE = 1 << 2,     ///< they damp motion, and may set in where atoms touch
     // pair styles
-    READS_VARIABLES = 1 << 3,    ///< may evaluate variables of the script
-    BACKGROUND = 1 << 4,         ///< acts between atoms and a fluid at rest: momentum changes
+    BACKGROUND = 1 << 3,    ///< acts between atoms and a fluid at rest: momentum changes
     // fixes
-    REPEATABLE = 1 << 5,    ///< post_force() is a function of positions, velocities and perhaps the
+    REPEATABLE = 1 << 4,    ///< post_force() is a function of positions, velocities and perhaps the
                             ///< time that changes forces and torques only
-    WITHOUT_VARIABLES = 1 << 6,    ///< of REPEATABLE: evaluates no variables of the script
-    THREADS = 1 << 7,              ///< pre_force() clears the forces of the threads of OPENMP
-    NO_FORCE = 1 << 8,             ///< is called around the forces, but changes none
-    BESIDE_GROUP = 1 << 9,         ///< its forces act on atoms outside of its group
-    THERMOSTAT = 1 << 10,          ///< controls a temperature, by forces or by velocities
-    TIME_STEP = 1 << 11,           ///< changes the time step
-    BODY_OF_ATOMS = 1 << 12,       ///< extract("body") gives the body of each atom, or -1
-    FIRST_RIGID = 1 << 13,         ///< takes the masses of bodies from the first rigid fix alone
-    CARRIES_BODIES = 1 << 14,      ///< calls deform() of rigid fixes where it remaps atoms
+    THREADS = 1 << 5,       ///< pre_force() clears the forces of the threads of OPENMP
+    NO_FORCE = 1 << 6,      ///< is called around the forces, but changes none
+    BESIDE_GROUP = 1 << 7,       ///< its forces act on atoms outside of its group
+    TIME_STEP = 1 << 8,          ///< changes the time step
+    BODY_OF_ATOMS = 1 << 9,      ///< extract("body") gives the body of each atom, or -1
+    CARRIES_BODIES = 1 << 10,    ///< calls deform() of rigid fixes where it remaps atoms
     // effects of fixes on velocities, positions, types or number of atoms of their groups
-    MOMENTUM = 1 << 15,    ///< subtracts a rigid motion from velocities
+    MOMENTUM = 1 << 11,    ///< subtracts a rigid motion from velocities
     TEMPERATURE =
-        1 << 16,    ///< scales velocities, uniformly unless a bias or a region divides them
-    REFLECTION = 1 << 17,    ///< mirrors single atoms that reach a position
-    EXCHANGE = 1 << 18,      ///< inserts and removes whole molecules, which may be bodies
-    SINGLE = 1 << 19,        ///< changes atoms one by one
+        1 << 12,    ///< scales velocities, uniformly unless a bias or a region divides them
+    REFLECTION = 1 << 13,    ///< mirrors single atoms that reach a position
+    EXCHANGE = 1 << 14,      ///< inserts and removes whole molecules, which may be bodies
+    SINGLE = 1 << 15,        ///< changes atoms one by one
     // atoms of a SINGLE change
-    ANY = 1 << 20,               ///< any atoms, for any group
-    CONSTRAINED = 1 << 21,       ///< those of its group whose degrees of freedom it subtracts
-    AT_INTEGRATION = 1 << 22,    ///< its group, if a keyword makes it act in initial_integrate()
+    ANY = 1 << 16,               ///< any atoms, for any group
+    CONSTRAINED = 1 << 17,       ///< those of its group whose degrees of freedom it subtracts
+    AT_INTEGRATION = 1 << 18,    ///< its group, if a keyword makes it act in initial_integrate()
 
     ON_ATOMS = MOMENTUM | TEMPERATURE | REFLECTION | EXCHANGE | SINGLE
   };
@@ -72,12 +68,9 @@ struct Style {
 /// any of its styles.
 const Style *known(unsigned any_of, const Fix *fix);
 const Style *known_pair(unsigned any_of, const Force *force);
-const Style *known_bond(unsigned any_of, const Force *force);
 const Style *known_run_style(unsigned any_of, const std::string &style);
 /// True if a compute accumulates the data of every evaluation of forces.
 bool adds_up(const Compute *compute);
-/// True if a variable, as shown by `info variables`, changes whenever it is evaluated.
-bool is_unrepeatable(const std::string &variable);
 
 /// The name of a fix in messages: ID and style.
 std::string name_of(const Fix *fix);

@@ -148,16 +148,7 @@ def test_a_factor_of_an_energy_is_not_followed(lmp_tree):
     assert f"{FALLBACK} {said}" in result.stdout
 
 
-def test_random_factors_are_those_without_a_look_at_forces(lmp_tree):
-    rows = []
-    for words in ("start bootstrap", "start zero", "tolerance 1e-8"):
-        text = scaled("equal random(0.5,1.5,4711)", words, "run 6", "v_factor")
-        result = lmp_tree.succeed(text)
-        rows.append(result.thermo[0]["v_factor"])
-    assert rows[0] == rows[1] == rows[2] and len(set(rows[0])) == 7
-
-
-def test_a_random_factor_is_named(lmp_tree):
+def test_a_random_factor_is_found(lmp_tree):
     result = lmp_tree.succeed(scaled("equal random(0.5,1.5,4711)"))
-    said = "pair style hybrid/scaled may read variable factor, which has another value in each evaluation"
+    said = "forces depend on time (pair style hybrid/scaled)"
     assert f"{FALLBACK} {said}" in result.stdout

