@@ -6,7 +6,6 @@
 #include "gear_quat_known_styles.h"
 
 #include "atom.h"
-#include "bond.h"
 #include "comm.h"
 #include "compute.h"
 #include "fix.h"
@@ -252,22 +251,6 @@ bool GearQuat::reads_at_end(LAMMPS *lmp, const Fix *owner)
       return true;
   }
   return false;
-}
-
-std::vector<std::string> GearQuat::repeatable_forces(LAMMPS *lmp)
-{
-  const Force *force = lmp->force;
-  std::vector<std::string> lines;
-  const auto add = [&lines](const std::string &name, bool repeatable) {
-    lines.push_back(name + (repeatable ? ": yes" : ": no"));
-  };
-  if (force->pair)
-    add(fmt::format("pair style {}", force->pair_style), !known_pair(UNREPEATABLE, force));
-  if (force->bond) add(fmt::format("bond style {}", force->bond_style), !force->bond->partial_flag);
-  for (auto *fix : lmp->modify->get_fix_list())
-    if (!fix->time_integrate && (lmp->modify->get_fix_mask(fix) & POST_FORCE))
-      add(name_of(fix), known(REPEATABLE, fix));
-  return lines;
 }
 
 bool GearQuat::exerts_forces(const void *style, const char *name)

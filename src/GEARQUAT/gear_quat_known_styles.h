@@ -83,8 +83,6 @@ bool makes_forces(LAMMPS *lmp, const Fix *owner);
 std::string reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner);
 /// True if an output or another fix may read data at the end of the present step.
 bool reads_at_end(LAMMPS *lmp, const Fix *owner);
-/// One line for each style: whether its forces can be evaluated again.
-std::vector<std::string> repeatable_forces(LAMMPS *lmp);
 /// False for no style and for style zero, of pairs, bonds, angles, dihedrals or impropers.
 bool exerts_forces(const void *style, const char *name);
 

@@ -412,12 +412,7 @@ std::string Report::exclude_own() const
 
 std::string Report::text() const
 {
-  std::string text = effects();
-  if (args.report == Arguments::Report::LONG) {
-    text += "  forces that can be evaluated again in a step\n";
-    for (const auto &line : repeatable_forces(lmp)) text += "    " + line + "\n";
-  }
-  return text + advice();
+  return effects() + advice();
 }
 
 }    // namespace

@@ -206,3 +206,35 @@ def test_the_volume_of_an_ideal_gas(lmp_tree, tmp_path, name):
         blocks = [block.mean() for block in np.array_split(values, 20)]
         assert abs(values.mean() - exact) < 4 * np.std(blocks, ddof=1) / np.sqrt(20)
         assert np.std(blocks, ddof=1) / np.sqrt(20) < 0.1 * exact
+
+
+# --- other fixes ----------------------------------------------------------------------------------
+
+OTHERS = (
+    "addforce 0.1 0 0",
+    "setforce NULL NULL 0.0",
+    "planeforce 0 0 1",
+    "lineforce 1 0 0",
+    "spring tether 1.0 2.0 2.0 NULL 0.0",
+    "spring/self 1.0 xyz",
+    "indent 1.0 sphere 2.0 2.0 2.0 0.5",
+    "viscous 0.1",
+    "gravity 1.0 vector 1 0 0",
+    "langevin 1 1 1 4711",
+    "momentum 5 angular",
+    "temp/berendsen 1 1 1",
+)
+
+
+def test_fixes_after_this_one(lmp_tree):
+    """The virial of the first step is that without the fix, and the motion is not."""
+    decks = [
+        pressed("iso 0.5 0.5 1.0 ptemp 1", steps=20, pair=REPULSIVE, after=after)
+        for after in ("", *(f"fix it all {words}" for words in OTHERS))
+    ]
+    result, (alone, *frames) = ends(lmp_tree, decks, ranks=2)
+    for words, table, rows in zip(OTHERS, result.thermo[1:], frames):
+        assert table["f_move[15]"][0] == pytest.approx(
+            result.thermo[0]["f_move[15]"][0], rel=1e-13
+        ), words
+        assert np.abs(rows - alone)[:, 3:6].max() > 1e-6, words

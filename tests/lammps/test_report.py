@@ -86,16 +86,6 @@ def test_long_says_what_is_left_out(lmp_tree):
     assert 0.5 * 2.0**-52 * 5 < float(bound[1]) < 0.5 * 2.0**-52 * 6
 
 
-def test_long_says_which_forces_can_be_evaluated_again(lmp_tree):
-    after = "fix drag all viscous 0.01\nfix heat all langevin 1 1 1 4711"
-    lines = report(lmp_tree, two_molecules("molecule values 4 report long", after=f"{after}\nrun 0"))
-    at = lines.index("  forces that can be evaluated again in a step")
-    style = next(line for line in lines[at:] if "pair style" in line)
-    assert style.strip() == "pair style zero: yes"
-    assert "    fix drag (viscous): yes" in lines[at:]
-    assert "    fix heat (langevin): no" in lines[at:]
-
-
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_another_word_is_refused(lmp_tree, ranks):
     message = "Fix gear/quat report: unknown value maybe (short, no or long)"
