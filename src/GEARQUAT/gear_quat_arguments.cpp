@@ -29,7 +29,6 @@ static constexpr int FIRST_WORD = 3;    // fix ID group gear/quat ...
 Arguments::Arguments(LAMMPS *lmp, int narg, char **arg) : Pointers(lmp)
 {
   const int used = parse_bodystyle(narg, arg);
-  find_formulas(arg[1]);
   parse_keywords(narg - used, arg + used);
 }
 
@@ -334,58 +333,69 @@ std::string Arguments::words_of_pressure() const
 
 std::vector<tagint> Arguments::body_ids(int groupbit) const
 {
+  if (points.empty()) return ids_by_style({groupbit, 0});
+  const int igroup = group->find(points);
+  if (igroup < 0) error->all(FLERR, "Fix gear/quat points: group ID {} does not exist", points);
+  const int bit = group->bitmask[igroup];
+  auto ids = ids_by_style({groupbit, bit});
+  tagint worst[2] = {0, 0};    // an ID, and an atom
+  for (int i = 0; i < atom->nlocal; ++i) {
+    worst[0] = std::max(worst[0], ids[i]);
+    if (!(atom->mask[i] & bit)) continue;
+    if (!(atom->mask[i] & groupbit)) worst[1] = atom->tag[i];
+    ids[i] = POINTS + atom->tag[i];
+  }
+  const auto all = over_ranks(MPI_MAX, worst, world);
+  if (all[0] > POINTS)
+    error->all(FLERR,
+               "Fix gear/quat points: body {} has the ID of a point; IDs of bodies are up to {}",
+               all[0], POINTS);
+  if (all[1])
+    error->all(
+        FLERR,
+        "Fix gear/quat points: atom {} of group {} is not in the group of the fix; define the "
+        "fix for a group that contains both bodies and points",
+        all[1], points);
+  return ids;
+}
+
+std::vector<tagint> Arguments::ids_by_style(const Selection &selection) const
+{
   switch (bodystyle) {
     case BodyStyle::MOLECULE:
-      return molecule_ids(groupbit);
+      return molecule_ids(selection);
     case BodyStyle::GROUP:
-      return group_ids(groupbit);
+      return group_ids(selection);
     case BodyStyle::CUSTOM:
-      return custom_ids(groupbit);
+      return custom_ids(selection);
     default:
       break;
   }
   std::vector<tagint> ids(atom->nlocal);
-  for (size_t i = 0; i < ids.size(); ++i) ids[i] = (atom->mask[i] & groupbit) ? 1 : 0;
+  for (size_t i = 0; i < ids.size(); ++i) ids[i] = selection.has(atom->mask[i]) ? 1 : 0;
   return ids;
 }
 
-/// Formulas of LAMMPS' variables for the bodies of this command.
-void Arguments::find_formulas(const std::string &group_of_fix)
-{
-  pressure.in_bodies = fmt::format("gmask({})", group_of_fix);
-  pressure.bodies = bodystyle == BodyStyle::MOLECULE ? "mol"
-      : bodystyle == BodyStyle::CUSTOM               ? custom
-                                                     : "1";
-  if (bodystyle != BodyStyle::GROUP) return;
-  std::vector<std::string> in, number;
-  for (const auto &one : groups) {
-    in.push_back(fmt::format("gmask({})", one));
-    number.push_back(fmt::format("{}*gmask({})", in.size(), one));
-  }
-  pressure.in_bodies = utils::join_words(in, "+");
-  pressure.bodies = utils::join_words(number, "+");
-}
-
-std::vector<tagint> Arguments::molecule_ids(int groupbit) const
+std::vector<tagint> Arguments::molecule_ids(const Selection &selection) const
 {
   if (!atom->molecule_flag)
     error->all(FLERR, "Fix gear/quat molecule requires an atom style with molecule IDs");
   std::vector<tagint> ids(atom->nlocal, 0);
   tagint without = 0;
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (!(atom->mask[i] & groupbit)) continue;
+    if (!selection.has(atom->mask[i])) continue;
     ids[i] = atom->molecule[i];
     if (ids[i] <= 0) without = atom->tag[i];
   }
   if ((without = over_ranks(MPI_MAX, without, world)))
     error->all(FLERR,
                "Fix gear/quat molecule: atom {} of the fix group has molecule ID 0; "
-               "take it out of the group or give it the ID of its body",
+               "take it out of the group, give it the ID of its body, or name it by keyword points",
                without);
   return ids;
 }
 
-std::vector<tagint> Arguments::group_ids(int groupbit) const
+std::vector<tagint> Arguments::group_ids(const Selection &selection) const
 {
   std::vector<tagint> ids(atom->nlocal, 0);
   tagint twice = 0;
@@ -393,7 +403,7 @@ std::vector<tagint> Arguments::group_ids(int groupbit) const
   for (size_t g = 0; g < groups.size(); ++g) {
     const int bit = group->bitmask[group->find(groups[g])];
     for (int i = 0; i < atom->nlocal; ++i) {
-      if (!(atom->mask[i] & bit) || !(atom->mask[i] & groupbit)) continue;
+      if (!(atom->mask[i] & bit) || !selection.has(atom->mask[i])) continue;
       if (ids[i] != 0) twice = atom->tag[i];
       ids[i] = (tagint) g + 1;
       used[g] = 1;
@@ -419,7 +429,7 @@ std::vector<tagint> Arguments::group_ids(int groupbit) const
 static constexpr double MOST_CUSTOM = std::min((double) MAXTAGINT, 9007199254740992.0);
 
 /// Bodies are numbered from the smallest value in the group, as in fix rigid.
-std::vector<tagint> Arguments::custom_ids(int groupbit) const
+std::vector<tagint> Arguments::custom_ids(const Selection &selection) const
 {
   std::vector<tagint> ids(atom->nlocal, 0);
 
@@ -444,7 +454,7 @@ std::vector<tagint> Arguments::custom_ids(int groupbit) const
     variable->compute_atom(index, 0, value.data(), 1, 0);
     tagint unusable = 0;
     for (int i = 0; i < atom->nlocal; ++i) {
-      if (!(atom->mask[i] & groupbit)) continue;
+      if (!selection.has(atom->mask[i])) continue;
       if (std::fabs(value[i]) < MOST_CUSTOM)
         ids[i] = (tagint) std::llround(value[i]);
       else
@@ -458,7 +468,7 @@ std::vector<tagint> Arguments::custom_ids(int groupbit) const
 
   bigint largest[2] = {-MAXBIGINT, -MAXBIGINT};    // of the value, and of its negative
   for (int i = 0; i < atom->nlocal; ++i)
-    if (atom->mask[i] & groupbit) {
+    if (selection.has(atom->mask[i])) {
       largest[0] = std::max(largest[0], (bigint) ids[i]);
       largest[1] = std::max(largest[1], -(bigint) ids[i]);
     }
@@ -467,7 +477,7 @@ std::vector<tagint> Arguments::custom_ids(int groupbit) const
     error->all(FLERR, "Fix gear/quat custom {}: values from {} to {} are too far apart", custom,
                -all[1], all[0]);
   for (int i = 0; i < atom->nlocal; ++i)
-    ids[i] = (atom->mask[i] & groupbit) ? (tagint) (ids[i] + all[1] + 1) : 0;
+    ids[i] = selection.has(atom->mask[i]) ? (tagint) (ids[i] + all[1] + 1) : 0;
   return ids;
 }
 

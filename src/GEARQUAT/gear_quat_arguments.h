@@ -52,8 +52,6 @@ struct PressureWords {
   double temperature = 0.0;
   std::vector<double> fixed;    ///< point; empty: the center of the box
   bool flip = true;
-  std::string bodies,
-      in_bodies;    ///< formulas of an atom: number of its body, 1 for an atom in one
 
   bool any() const { return std::count(on, on + COMPONENTS, true) > 0; }
   bool shears() const { return on[3] || on[4] || on[5]; }
@@ -91,7 +89,8 @@ struct Arguments : protected Pointers {
   bool reinit;
   Report report;
   std::string infile;
-  std::string mol;    ///< template of bodies that are inserted
+  std::string mol;       ///< template of bodies that are inserted
+  std::string points;    ///< group of atoms that are bodies of one atom each
   std::vector<MaskWords> masks;
   Isokinetic isokinetic;
   bool rescale;
@@ -110,6 +109,9 @@ struct Arguments : protected Pointers {
   /// Keywords of the pressure, as in the command.
   std::string words_of_pressure() const;
 
+  /// A point has this number plus the atom ID as ID of its body.
+  static constexpr tagint POINTS = 1000000000;
+
   /// Body of every owned atom, 0 for atoms in none; error messages give the atom.  Collective.
   std::vector<tagint> body_ids(int groupbit) const;
 
@@ -122,7 +124,6 @@ struct Arguments : protected Pointers {
   std::map<std::string, KeywordValue> given;    ///< of the command, its bodystyle among them
 
   int parse_bodystyle(int narg, char **arg);
-  void find_formulas(const std::string &group_of_fix);
   void parse_keywords(int narg, char **arg);
   void take_preset();
   bool is_on(const std::string &keyword, const std::string &value) const;
@@ -134,9 +135,16 @@ struct Arguments : protected Pointers {
   void check_pressure();
   void check_directions() const;
   void check_coupling() const;
-  std::vector<tagint> molecule_ids(int groupbit) const;
-  std::vector<tagint> group_ids(int groupbit) const;
-  std::vector<tagint> custom_ids(int groupbit) const;
+
+  /// The atoms that the body style assigns to bodies.
+  struct Selection {
+    int group, points;    ///< bits of groups
+    bool has(int mask) const { return (mask & group) && !(mask & points); }
+  };
+  std::vector<tagint> ids_by_style(const Selection &selection) const;
+  std::vector<tagint> molecule_ids(const Selection &selection) const;
+  std::vector<tagint> group_ids(const Selection &selection) const;
+  std::vector<tagint> custom_ids(const Selection &selection) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

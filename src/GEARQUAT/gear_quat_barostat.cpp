@@ -381,18 +381,12 @@ void Barostat::refuse_others() const
   for (const Site &site : sites) here -= (atom->mask[site.atom] & bits) != 0;
   const bigint others = over_ranks(MPI_SUM, here, world);
   if (others == 0) return;
-  tagint last = 0;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    last = std::max(last, bodies.body_at(ibody).id);
-  const double number = std::pow(10.0, std::ceil(std::log10(over_ranks(MPI_MAX, last, world) + 1)));
-  error->all(
-      FLERR,
-      "Fix gear/quat: constant pressure requires all moving atoms to be in bodies of this "
-      "fix, and {3} that {4} moves are not: their places would not follow the box; make each "
-      "of them a body of its own with \"variable b atom "
-      "'({0})*({1})+(1-({0}))*({2:.0f}+id)'\" and with \"custom v_b\" for a group of all "
-      "atoms, and let no other fix move them",
-      asked.in_bodies, asked.bodies, number, others, movers);
+  error->all(FLERR,
+             "Fix gear/quat: constant pressure requires all moving atoms to be in bodies of this "
+             "fix, and {} that {} moves are not: their places would not follow the box; put them "
+             "into a group P, define this fix for a group of all atoms with keyword points P, and "
+             "let no other fix move them",
+             others, movers);
 }
 
 void Barostat::refuse_scene() const

@@ -278,9 +278,10 @@ bool GearQuat::warn_of_molecule_ids(LAMMPS *lmp, const Fix *fix, const Arguments
   if (args.bodystyle != Arguments::BodyStyle::MOLECULE || !atom->molecule_flag) return false;
   tagint here[2] = {0, 0};    // an atom, and its body
   for (int i = 0; i < atom->nlocal; ++i)
-    if (ownership.in_body(i) && atom->molecule[i] != ownership.id_of(i) && atom->tag[i] > here[0]) {
+    if (const tagint id = ownership.in_body(i) ? ownership.id_of(i) : 0;
+        id != 0 && id <= Arguments::POINTS && atom->molecule[i] != id && atom->tag[i] > here[0]) {
       here[0] = atom->tag[i];
-      here[1] = ownership.id_of(i);
+      here[1] = id;
     }
   const tagint other = over_ranks(MPI_MAX, here[0], lmp->world);
   if (!other) return false;

@@ -75,6 +75,8 @@ const KeywordTable &GearQuat::keyword_table()
      "whether bodies adopt changes of their atoms between runs"},
     {"mol", BODIES, K::NAME, {"template-ID"}, [](A &a, const V &v) { a.mol = v.text; },
      "the template of bodies that other fixes insert"},
+    {"points", BODIES, K::NAME, {"group-ID"}, [](A &a, const V &v) { a.points = v.text; },
+     "the group of atoms that are bodies of one atom each"},
     {"force", PHYSICS, K::MASK, FLAGS, [](A &a, const V &v) { a.masks.push_back(v.mask); },
      "which components of the total force act on bodies M"},
     {"torque", PHYSICS, K::MASK, FLAGS, [](A &a, const V &v) { a.masks.push_back(v.mask); },

@@ -339,7 +339,7 @@ thermo 20
 run 40
 """,
         "requires all moving atoms to be in bodies of this fix, and 2 that fix 2 (nvt) moves are not",
-        ("fix 1 water gear/quat molecule", "{command}\nfix 1 all gear/quat custom v_b"),
+        ("fix 1 water gear/quat molecule", "fix 1 all gear/quat molecule points ions"),
         ("fix 2 ions nvt temp 300 300 100\n", ""),
     ),
     "rods under shear": (
@@ -450,14 +450,14 @@ def converted_shake(script):
     _, name, whole, style, *words = line.split()
     new = f"fix {name} {group} gear/quat molecule {' '.join(words)}\n"
     if whole != group and style == "npt":  # the table: ions at constant pressure
-        new = f"variable body atom {PAGE_VARIABLE}\nfix {name} {whole} gear/quat custom v_body {' '.join(words)}\n"
+        new = f"group rest subtract {whole} {group}\n"
+        new += f"fix {name} {whole} gear/quat molecule points rest {' '.join(words)}\n"
     elif whole != group:
         new += f"group rest subtract {whole} {group}\nfix {name}_rest rest {style} {' '.join(words)}\n"
     return re.sub(r"^fix \S+ \S+ shake.*\n", "", script, flags=re.M).replace(f"{line}\n", new)
 
 
 SHAKE_PAGE = (PAGE.parent / "from_shake.md").read_text()
-PAGE_VARIABLE = re.search(r"`variable body atom (.*?)`", SHAKE_PAGE)[1]
 MADE = "velocity all create 300 4711\nfix s water shake 1e-6 100 0 b 1 a 1\n"
 SHAKEN = {
     "water, nve": f"{LIQUID}{MADE}fix n all nve\nthermo 20\nrun 40\n",
