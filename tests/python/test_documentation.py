@@ -127,6 +127,7 @@ set atom 3*4 mol 2
 group clump id 1 2
 group left id 1 2
 group right id 3 4
+group ions empty
 fix property all property/atom i_body
 set group left i_body 1
 set group right i_body 2
