@@ -179,16 +179,8 @@ void FixGearQuat::setup_pre_neighbor()
   driven_box.follow_images();
   const bool defined = step.phase == Phase::DEFINED;
   if (!defined && !is_minimized()) step.take_velocities(update->ntimestep, false);
-  const bool from_atoms = args.infile.empty() && !any_differs(stated);
-  const bool takes_over = from_atoms && (args.reinit || defined);
-  const Sites::Changes found = sites.changes();
-  if (!takes_over && !is_minimized() && found.moved && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: atom {} was moved away from its place in body {}, and with "
-                   "reinit no, or infile, the body puts it back in the first step; use reinit yes, "
-                   "or define the fix after the change",
-                   found.moved, found.body);
-  if (takes_over && found.any) {
+  const bool takes_over = args.infile.empty() && !any_differs(stated) && (args.reinit || defined);
+  if (takes_over && sites.any_changes()) {
     sites.refuse_tears();
     sites.take_out_flow();
     ownership.recreate();

@@ -73,7 +73,6 @@ struct PressureWords {
 struct Arguments : protected Pointers {
   enum class BodyStyle { SINGLE, MOLECULE, GROUP, CUSTOM };
   enum class Start { BOOTSTRAP, ZERO };
-  enum class Report { NO, SHORT, LONG };
 
   BodyStyle bodystyle = BodyStyle::SINGLE;
   std::vector<std::string> groups;    ///< group: one per body
@@ -87,7 +86,7 @@ struct Arguments : protected Pointers {
   double every_time = 0.0;          ///< steps end at multiples of it; 0: at any time
   Start start;
   bool reinit;
-  Report report;
+  bool report;
   std::string infile;
   std::string mol;       ///< template of bodies that are inserted
   std::string points;    ///< group of atoms that are bodies of one atom each

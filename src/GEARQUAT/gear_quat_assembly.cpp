@@ -314,6 +314,7 @@ void Assembly::take_given(const GivenBody &given_body, int part)
   Made &one = made[part];
   if (one.owner_rank == comm->me) found.push_back(one.body.id);
   one.body.rigid.mass = given_body.mass;
+  if (!(given_body.mass > 0.0)) faulty[MASSLESS] = one.body.id;
   for (int k = 0; k < 3; ++k) {
     one.state.center[k] = given_body.center[k];
     one.state.velocity[k] = given_body.velocity[k];
@@ -473,12 +474,12 @@ void Assembly::keep_axes()
 static const char *const FAULT_TEXTS[] = {
     "Fix gear/quat: body {} has no mass; the masses of its atoms must add up to more than zero",
     "Fix gear/quat: inertia or velocities of body {} are not finite numbers",
-    "Fix gear/quat infile: the inertia tensor of body {} has a negative principal moment, which "
-    "is impossible",
-    "Fix gear/quat infile: the largest principal moment of body {} is more than the sum of the "
-    "two others, which is impossible",
-    "Fix gear/quat infile: the center of mass of body {} is far away from all its atoms; are its "
-    "position and its image flags right?"};
+    "Fix gear/quat, infile or template: the inertia tensor of body {} has a negative principal "
+    "moment, which is impossible",
+    "Fix gear/quat, infile or template: the largest principal moment of body {} is more than the "
+    "sum of the two others, which is impossible",
+    "Fix gear/quat, infile or template: the center of mass of body {} is far away from all its "
+    "atoms; are its position and its image flags right?"};
 
 /// A given center may lie outside of the body, but not by half a box, since image flags belong to
 /// it.

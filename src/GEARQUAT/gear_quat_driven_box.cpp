@@ -72,24 +72,17 @@ void DrivenBox::init()
 /// A barostat with too short a damping time even turns the box inside out.
 void DrivenBox::refuse_jump() const
 {
-  constexpr double JUMP = 0.05, SMALL = 0.01;    // of an edge in a step
+  constexpr double JUMP = 0.05;    // of an edge in a step
   for (int k = 0; k < 3; ++k) {
     const double ratio = domain->h[k] / ownership.box()[k];
     if (std::fabs(ratio - 1.0) < JUMP) continue;
-    double larger = std::fabs(1.0 - ratio * ratio * ratio) / (3.0 * SMALL);
-    std::string change = fmt::format("by a factor of {:.3g}", ratio);
-    if (!std::isfinite(ratio)) {    // the cube root of a negative number
-      change = "to a value that is not a number";
-      larger = 1.0 / SMALL;
-    }
     for (const auto *other : modify->get_fix_list())
       if (other != fix && changes_box(other) && !utils::strmatch(other->style, "^deform"))
         error->all(FLERR,
-                   "Fix gear/quat: fix {} ({}) has changed the length of the box along {} {} in "
-                   "step {}; make its Pdamp, or the modulus of fix press/berendsen, {:.2g} times "
-                   "larger",
-                   other->id, other->style, "xyz"[k], change, update -> ntimestep,
-                   rounded_up(larger));
+                   "Fix gear/quat: fix {} ({}) has changed the length of the box along {} by a "
+                   "factor of {:.3g} in step {}; give it a much longer Pdamp, or fix "
+                   "press/berendsen a larger modulus",
+                   other->id, other->style, "xyz"[k], ratio, update -> ntimestep);
   }
 }
 

@@ -143,10 +143,8 @@ const KeywordTable &GearQuat::keyword_table()
     {"fixedpoint", PHYSICS, K::NUMBERS, {"x", "y", "z"},
      [](A &a, const V &v) { a.pressure.fixed = v.numbers; },
      "the point of the box that does not move", {}, {}, 3},
-    {"report", OUTPUT, K::WORD, {"short", "no", "long"},
-     [](A &a, const V &v) {
-       a.report = v.is("no") ? A::Report::NO : v.is("long") ? A::Report::LONG : A::Report::SHORT;
-     }, "what the log says about the scene"},
+    {"report", OUTPUT, K::WORD, {"yes", "no"}, [](A &a, const V &v) { a.report = v.is("yes"); },
+     "whether the log reports on the scene"},
     {"preset", INTEGRATION, K::WORD, {"none", "paper"}, [](A &, const V &) {},
      "whose choices apply to keywords that are not given"},
     {"c0", INTEGRATION, K::WORD, {"position", "velocity"},

@@ -25,8 +25,6 @@
 #include "utils.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -35,74 +33,61 @@ using namespace GearQuat;
    papers to cite; LAMMPS shows the first line of each
 ------------------------------------------------------------------------- */
 
-static std::string article(const char *key, const char *authors, const char *title,
-                           const char *journal, int year, int volume, const char *pages)
-{
-  return fmt::format(
-      "@Article{{{},\n author = {{{}}},\n title = {{{}}},\n journal = {{{}}},\n year "
-      "= {},\n volume = {},\n pages = {{{}}}\n}}\n\n",
-      key, authors, title, journal, year, volume, pages);
-}
-
-static std::string book(const char *key, const char *authors, const char *title,
-                        const char *publisher, int year)
-{
-  return fmt::format(
-      "@Book{{{},\n author = {{{}}},\n title = {{{}}},\n publisher = {{{}}},\n year = "
-      "{}\n}}\n\n",
-      key, authors, title, publisher, year);
-}
-
 void GearQuat::add_citations(LAMMPS *lmp, const Arguments &args)
 {
   if (!lmp->citeme) return;
-  const auto cite = [lmp](const std::string &what, const std::string &paper) {
-    lmp->citeme->add("fix gear/quat" + what + "\n\n" + paper);
+  const auto cite = [lmp](bool used, const std::string &what, const std::string &paper) {
+    if (used) lmp->citeme->add("fix gear/quat" + what + "\n\n@" + paper + "\n}\n\n");
   };
-  if (args.scheme.remembers)
-    cite(" tolerance: method of Adams with variable step and order",
-         book("Shampine1975", "L. F. Shampine and M. K. Gordon",
-              "Computer Solution of Ordinary Differential Equations: The Initial Value Problem",
-              "Freeman", 1975));
-  else
-    cite(": predictor-corrector method",
-         book("Gear1971", "C. William Gear",
-              "Numerical Initial Value Problems in Ordinary Differential Equations",
-              "Prentice-Hall", 1971));
-  if (args.scheme.first())
-    cite(": quaternions in the equations of motion, first-order form: "
-         "https://doi.org/10.1080/00268977700101751",
-         article("Evans1977", "Denis J. Evans", "On the Representation of Orientation Space",
-                 "Molecular Physics", 1977, 34, "317--325"));
-  if (args.scheme.formulation == Formulation::SECOND)
-    cite(": quaternions in the equations of motion, second-order form: "
-         "https://doi.org/10.1016/0021-9991(85)90009-9",
-         article("Rapaport1985", "Dennis C. Rapaport",
-                 "Molecular Dynamics Simulation Using Quaternions",
-                 "Journal of Computational Physics", 1985, 60, "306--314"));
-  if (args.isokinetic != Isokinetic::NONE)
-    cite(" isokinetic: constant kinetic energy by Gauss' principle: "
-         "https://doi.org/10.1103/PhysRevA.28.1016",
-         article("EvansGauss1983",
-                 "Denis J. Evans and William G. Hoover and Bruce H. Failor and Bill Moran and "
-                 "Anthony J. C. Ladd",
-                 "Nonequilibrium Molecular Dynamics via {Gauss's} Principle of Least Constraint",
-                 "Physical Review A", 1983, 28, "1016--1021"));
-  if (args.thermostat.is_random())
-    cite(" langevin: Langevin dynamics of rigid bodies: https://doi.org/10.1063/1.4916312",
-         article("Davidchack2015", "R. L. Davidchack and T. E. Ouldridge and M. V. Tretyakov",
-                 "New {Langevin} and gradient thermostats for rigid body dynamics",
-                 "Journal of Chemical Physics", 2015, 142, "144114"));
-  else if (args.thermostat.damp > 0.0)
-    cite(" temp: chains of thermostats: https://doi.org/10.1063/1.463940",
-         article("Martyna1992", "Glenn J. Martyna and Michael L. Klein and Mark Tuckerman",
-                 "{Nos\\'e--Hoover} Chains: The Canonical Ensemble via Continuous Dynamics",
-                 "Journal of Chemical Physics", 1992, 97, "2635--2643"));
-  if (args.pressure.any())
-    cite(" iso, aniso, x, y and z: constant pressure: https://doi.org/10.1063/1.467468",
-         article("Martyna1994", "Glenn J. Martyna and Douglas J. Tobias and Michael L. Klein",
-                 "Constant Pressure Molecular Dynamics Algorithms", "Journal of Chemical Physics",
-                 1994, 101, "4177--4189"));
+  cite(args.scheme.remembers, " tolerance: method of Adams with variable step and order",
+       "Book{Shampine1975,\n author = {L. F. Shampine and M. K. Gordon},\n"
+       " title = {Computer Solution of Ordinary Differential Equations: The Initial Value "
+       "Problem},\n"
+       " publisher = {Freeman},\n year = 1975");
+  cite(!args.scheme.remembers, ": predictor-corrector method",
+       "Book{Gear1971,\n author = {C. William Gear},\n"
+       " title = {Numerical Initial Value Problems in Ordinary Differential Equations},\n"
+       " publisher = {Prentice-Hall},\n year = 1971");
+  cite(args.scheme.first(),
+       ": quaternions in the equations of motion, first-order form: "
+       "https://doi.org/10.1080/00268977700101751",
+       "Article{Evans1977,\n author = {Denis J. Evans},\n"
+       " title = {On the Representation of Orientation Space},\n"
+       " journal = {Molecular Physics},\n year = 1977,\n volume = 34,\n pages = {317--325}");
+  cite(args.scheme.formulation == Formulation::SECOND,
+       ": quaternions in the equations of motion, second-order form: "
+       "https://doi.org/10.1016/0021-9991(85)90009-9",
+       "Article{Rapaport1985,\n author = {Dennis C. Rapaport},\n"
+       " title = {Molecular Dynamics Simulation Using Quaternions},\n"
+       " journal = {Journal of Computational Physics},\n year = 1985,\n volume = 60,\n"
+       " pages = {306--314}");
+  cite(args.isokinetic != Isokinetic::NONE,
+       " isokinetic: constant kinetic energy by Gauss' principle: "
+       "https://doi.org/10.1103/PhysRevA.28.1016",
+       "Article{EvansGauss1983,\n author = {Denis J. Evans and William G. Hoover and Bruce H. "
+       "Failor and Bill Moran and Anthony J. C. Ladd},\n"
+       " title = {Nonequilibrium Molecular Dynamics via {Gauss's} Principle of Least Constraint},\n"
+       " journal = {Physical Review A},\n year = 1983,\n volume = 28,\n pages = {1016--1021}");
+  cite(args.thermostat.is_random(),
+       " langevin: Langevin dynamics of rigid bodies: https://doi.org/10.1063/1.4916312",
+       "Article{Davidchack2015,\n author = {R. L. Davidchack and T. E. Ouldridge and M. V. "
+       "Tretyakov},\n"
+       " title = {New {Langevin} and gradient thermostats for rigid body dynamics},\n"
+       " journal = {Journal of Chemical Physics},\n year = 2015,\n volume = 142,\n"
+       " pages = {144114}");
+  cite(args.thermostat.damp > 0.0 && !args.thermostat.is_random(),
+       " temp: chains of thermostats: https://doi.org/10.1063/1.463940",
+       "Article{Martyna1992,\n author = {Glenn J. Martyna and Michael L. Klein and Mark "
+       "Tuckerman},\n"
+       " title = {{Nos\\'e--Hoover} Chains: The Canonical Ensemble via Continuous Dynamics},\n"
+       " journal = {Journal of Chemical Physics},\n year = 1992,\n volume = 97,\n"
+       " pages = {2635--2643}");
+  cite(args.pressure.any(),
+       " iso, aniso, x, y and z: constant pressure: https://doi.org/10.1063/1.467468",
+       "Article{Martyna1994,\n author = {Glenn J. Martyna and Douglas J. Tobias and Michael L. "
+       "Klein},\n title = {Constant Pressure Molecular Dynamics Algorithms},\n"
+       " journal = {Journal of Chemical Physics},\n year = 1994,\n volume = 101,\n"
+       " pages = {4177--4189}");
 }
 
 /* ----------------------------------------------------------------------
@@ -124,7 +109,8 @@ class Report : protected Pointers {
   {
   }
   void warn_of_own_pairs() const;
-  std::string text() const;
+  std::string effects() const;
+  std::string advice() const;
 
  private:
   const Fix *fix;
@@ -139,11 +125,9 @@ class Report : protected Pointers {
   enum { POINT, LINEAR, SPHERICAL, SYMMETRIC, ASYMMETRIC, PLANAR, TOPS };
   enum { BODIES = TOPS, FREEDOMS, OFF_CENTER, EXTENDED, OF_GHOSTS, COUNTS };
   int top_of(const RigidBody &rigid) const;
-  std::string effects() const;
   std::string settings() const;
   std::vector<double> labels(const Fleet &fleet) const;
   template <class Visit> void visit_pairs(Visit visit) const;
-  std::string advice() const;
   std::string exclude_own() const;
   bool meets_itself() const;
 };
@@ -178,23 +162,18 @@ std::string Report::settings() const
                      passes, scheme.tuned ? "tuned" : "gear");
 }
 
-constexpr char NOTHING[] = "nothing: the trajectory is the same to the last bit";
-
-/// The title and a row for each effect; if it is off, a long report says what is left out.
-/// Collective.
+/// The title and a row for each effect.  Collective.
 std::string Report::effects() const
 {
   bigint here[COUNTS] = {};
-  double largest[3] = {0.0, -(double) MAXTAGINT, 0.0};    // coordinate, and atoms of a body
+  tagint sizes[2] = {-MAXTAGINT, 0};    // the fewest atoms of a body, negative, and the most
   here[BODIES] = bodies.nowned();
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const Body &body = bodies.body_at(ibody);
     ++here[top_of(body.rigid)];
     here[FREEDOMS] += body.rigid.freedoms(domain->dimension);
-    for (const double x : bodies.state_of(ibody).center)
-      largest[0] = std::max(largest[0], std::fabs(x));
-    largest[1] = std::max(largest[1], -(double) body.natoms);
-    largest[2] = std::max(largest[2], (double) body.natoms);
+    sizes[0] = std::max(sizes[0], -body.natoms);
+    sizes[1] = std::max(sizes[1], body.natoms);
   }
   for (const Site &site : sites) {
     here[OFF_CENTER] += dot3(site.arm_body, site.arm_body) > 0.0;
@@ -202,33 +181,23 @@ std::string Report::effects() const
   }
   here[EXTENDED] = sites.number_of_extended();
   const auto count = over_ranks(MPI_SUM, here, world);
-  const auto most = over_ranks(MPI_MAX, largest, world);
+  const auto most = over_ranks(MPI_MAX, sizes, world);
 
-  const bigint fewest = count[BODIES] ? (bigint) -most[1] : 0;
+  const tagint fewest = count[BODIES] ? -most[0] : 0;
   std::string text = fmt::format("Fix gear/quat {}: {} bodies of ", fix->id, count[BODIES]);
-  if (fewest != (bigint) most[2]) text += fmt::format("{} to ", fewest);
-  text += fmt::format("{} sites, {} degrees of freedom\n", (bigint) most[2], count[FREEDOMS]);
+  if (fewest != most[1]) text += fmt::format("{} to ", fewest);
+  text += fmt::format("{} sites, {} degrees of freedom\n", most[1], count[FREEDOMS]);
   text += settings();
 
-  const auto row = [&](const char *name, bool on, const std::string &reason,
-                       const std::string &omits = NOTHING, bool in_part = false) {
+  const auto row = [&](const char *name, bool on, const std::string &reason) {
     text += fmt::format("  {:<20} {:<3}  {}\n", name, on ? "on" : "off", reason);
-    if (args.report == Arguments::Report::LONG && (!on || in_part) && !omits.empty())
-      text += fmt::format("  {:<20}      leaves out {}\n", "", omits);
   };
   static const char *const NAMES[] = {"points",         "linear",          "spherical tops",
                                       "symmetric tops", "asymmetric tops", "in a plane"};
   std::vector<std::string> tops;
   for (int top = 0; top < TOPS; ++top)
     if (count[top]) tops.push_back(fmt::format("{}: {}", NAMES[top], count[top]));
-  row("rotation", count[POINT] < count[BODIES], utils::join_words(tops, ", "),
-      count[POINT] || count[LINEAR]
-          ? fmt::format("rotation about axes whose moment of inertia is below {:g} of the largest "
-                        "of the body; of the energy of an equally fast one about that axis, less "
-                        "than this",
-                        LINEAR_FRACTION)
-          : "",
-      true);
+  row("rotation", count[POINT] < count[BODIES], utils::join_words(tops, ", "));
   const bool forces = makes_forces(lmp, fix);
   row("torques of forces", count[OFF_CENTER] > 0 && forces,
       !forces ? "nothing in the scene makes forces"
@@ -265,17 +234,13 @@ std::string Report::effects() const
         fmt::format("temp {:g} {:g} {:g}, tchain {}, {}", temp.start, temp.stop, temp.damp,
                     temp.length, temp.separate ? "separate" : "total"));
   row("virial", fix->thermo_virial != 0,
-      fix->thermo_virial ? "in steps that ask for pressure or stress" : "fix_modify virial no",
-      "pressure and stress of the forces of constraint; of the trajectory nothing");
+      fix->thermo_virial ? "in steps that ask for pressure or stress" : "fix_modify virial no");
   const std::string reader = reader_of_predicted_velocities(lmp, fix);
   row("predicted velocities", !reader.empty(), reader.empty() ? "nothing reads them" : reader);
   row("compensated sums", args.scheme.compensate,
-      args.scheme.compensate ? "compensate yes" : "compensate no",
-      fmt::format("rounding of a coordinate, at most {:.1e} of length in a sum",
-                  0.5 * std::numeric_limits<double>::epsilon() * most[0]));
+      args.scheme.compensate ? "compensate yes" : "compensate no");
   const bool changing = args.control.eps > 0.0;
-  row("changing step", changing, changing ? args.words_of_control() : "no tolerance",
-      "control of the error of a step: the time step determines it");
+  row("changing step", changing, changing ? args.words_of_control() : "no tolerance");
   if (args.pressure.any()) row("barostat", true, args.words_of_pressure());
   return text;
 }
@@ -410,11 +375,6 @@ std::string Report::exclude_own() const
   }
 }
 
-std::string Report::text() const
-{
-  return effects() + advice();
-}
-
 }    // namespace
 
 void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
@@ -422,7 +382,7 @@ void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, 
 {
   const Report report(lmp, fix, args, fleet, bodies, ownership, sites);
   report.warn_of_own_pairs();
-  if (args.report == Arguments::Report::NO) return;
-  const std::string text = report.text();
+  if (!args.report) return;
+  const std::string text = report.effects() + report.advice();
   if (lmp->comm->me == 0) utils::logmesg(lmp, text);
 }

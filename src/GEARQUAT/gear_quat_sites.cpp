@@ -9,7 +9,6 @@
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
@@ -23,7 +22,7 @@ using namespace GearQuat;
 
 static constexpr double SAME_LENGTH = 1.0e-9;    // of the box, of lengths
 static constexpr double SAME_SHAPE = 1.0e-3;     // of distances; files may have few digits
-static constexpr double SAME_PLACE = 1.0e-6;     // of positions
+static constexpr double SAME = 1.0e-11;          // rounding of coordinates and velocities
 
 /// LAMMPS' arrays of vectors are one block of memory.
 static double *first_of(double **vectors)
@@ -270,42 +269,37 @@ void Sites::unwrapped(const Site &site, double *found, double *expected) const
   }
 }
 
-static bool near(const double *a, const Sites::Expected &expected, double same)
+static bool near(const double *a, const Sites::Expected &expected)
 {
   for (int k = 0; k < 3; ++k)
-    if (!(std::fabs(a[k] - expected.value[k]) <= same * expected.size)) return false;
+    if (!(std::fabs(a[k] - expected.value[k]) <= SAME * expected.size)) return false;
   return true;
 }
 
-bool Sites::is_there(const Site &site, double same) const
+bool Sites::is_there(const Site &site) const
 {
-  return near(atom->x[site.atom], expected_position(site), same);
+  return near(atom->x[site.atom], expected_position(site));
 }
 
 bool Sites::is_as_fast(const Site &site) const
 {
-  return near(atom->v[site.atom], expected_velocity(site), SAME);
+  return near(atom->v[site.atom], expected_velocity(site));
 }
 
 /* ----------------------------------------------------------------------
    masses, positions and velocities
 ------------------------------------------------------------------------- */
 
-Sites::Changes Sites::changes() const
+bool Sites::any_changes() const
 {
-  tagint here[2] = {0, 0}, body = 0;    // whether an atom has changed, and one in another place
+  int here = 0;
   for (const Site &site : sites) {
     const int i = site.atom;
     if (!is_there(site) || !is_as_fast(site) || ownership.has_other_mass(i) ||
         !extended.match(i, ownership.mass_of(i), bodies.state_of(site.body)))
-      here[0] = 1;
-    if (!is_there(site, SAME_PLACE) && atom->tag[i] > here[1]) {
-      here[1] = atom->tag[i];
-      body = bodies.body_at(site.body).id;
-    }
+      here = 1;
   }
-  const auto all = over_ranks(MPI_MAX, here, world);
-  return {all[0] != 0, all[1], over_ranks(MPI_MAX, all[1] == here[1] ? body : 0, world)};
+  return over_ranks(MPI_MAX, here, world) != 0;
 }
 
 /// The user may have moved, rotated or deformed a body between two runs.  It is torn if its atoms
@@ -323,7 +317,8 @@ void Sites::refuse_tears() const
   ownership.sum(owners);
   ownership.spread(owners);
 
-  tagint here[3] = {0, 0, 0};    // bodies that are torn, cut by the box, or have another shape
+  const bool same_box = std::equal(domain->h, domain->h + 6, ownership.box().begin());
+  tagint here[3] = {0, 0, 0};    // bodies that are torn, cut by the box, or changed with it
   for (const Site &site : sites) {
     const Owner &owner = owners[site.body];
     double found[3], expected[3], before[3], now[3], change[3];
@@ -338,7 +333,7 @@ void Sites::refuse_tears() const
     const tagint id = bodies.body_at(site.body).id;
     if (whole_periods_away(domain, change, further)) here[0] = id;
     if (moved_with_faces(domain, ownership.box().data(), change)) here[1] = id;
-    if (std::fabs(further) > SAME_SHAPE * length(before) + few) here[2] = id;
+    if (!same_box && std::fabs(further) > SAME_SHAPE * length(before) + few) here[2] = id;
   }
   const auto all = over_ranks(MPI_MAX, here, world);
   if (all[0])
@@ -354,19 +349,12 @@ void Sites::refuse_tears() const
         "Fix gear/quat: the box was changed while body {} lies across its faces, which tears "
         "it; first move the body inside with displace_atoms, or change the box with fix deform",
         all[1]);
-  if (all[2] && !std::equal(domain->h, domain->h + 6, ownership.box().begin()))
+  if (all[2])
     error->all(
         FLERR,
         "Fix gear/quat: the box has changed, and body {} has another shape than before: change_box "
         "with remap moves each atom by itself; change the box with fix deform, which moves bodies "
         "as a whole, or, to keep this shape, define the fix after the change",
-        all[2]);
-  if (all[2] && comm->me == 0)
-    error->warning(
-        FLERR,
-        "Fix gear/quat: atoms of body {} were moved relative to each other since the fix "
-        "was defined or last ran, as by displace_atoms or set on single atoms; the body "
-        "is made again with this other shape",
         all[2]);
 }
 
@@ -443,7 +431,7 @@ bool Sites::gather_impulses()
   for (const Site &site : sites) {
     const Expected expected = expected_velocity(site);
     const double mass = ownership.mass_of(site.atom) / force->ftm2v, *v = atom->v[site.atom];
-    if (!near(v, expected, SAME)) differs = 1;
+    if (!near(v, expected)) differs = 1;
     for (int k = 0; k < 3; ++k)
       impulses[3 * (size_t) site.atom + k] = mass * (v[k] - expected.value[k]);
   }

@@ -57,16 +57,11 @@ class Sites : protected Pointers {
   void advance_densities(double step);
   /// Sets orientations and rates of extended atoms, if only these have changed.
   void place_extended();
-  /// Differences between atoms and their bodies.
-  struct Changes {
-    bool any;        ///< of masses, positions, velocities or orientations
-    tagint moved;    ///< an atom that is not where its body will put it, 0 for none
-    tagint body;     ///< its body
-  };
+  /// True if masses, positions, velocities or orientations of atoms differ from their bodies.
   /// Collective.
-  Changes changes() const;
-  /// Ends the run if image flags or another box have torn a body; rank 0 warns of another shape.
-  /// Ownership::box() is the previous box.  Collective.
+  bool any_changes() const;
+  /// Ends the run if image flags or another box have torn or changed a body.  Ownership::box() is
+  /// the previous box.  Collective.
   void refuse_tears() const;
   /// The number of times that sites were listed or placed, the same on all ranks: results computed
   /// from positions or loads at another number are out of date.
@@ -81,10 +76,9 @@ class Sites : protected Pointers {
   Expected expected_velocity(const Site &site) const;
   /// Unwrapped positions: the one of the atom, and the one computed from its body.
   void unwrapped(const Site &site, double *found, double *expected) const;
-  // True if position or velocity of the atom match its body, by default up to rounding of
-  // coordinates and velocities, relative to box and body.
-  static constexpr double SAME = 1.0e-11;
-  bool is_there(const Site &site, double same = SAME) const;
+  // True if position or velocity of the atom match its body, up to rounding of coordinates and
+  // velocities, relative to box and body.
+  bool is_there(const Site &site) const;
   bool is_as_fast(const Site &site) const;
 
   /// The number of periods between the unwrapped and the wrapped position of an atom of a body.

@@ -48,8 +48,7 @@ void Forces::clear()
    mass, center and inertia in a molecule template
 ------------------------------------------------------------------------- */
 
-static constexpr double SAME = 1.0e-6;       // numbers of a file have few digits
-static constexpr double ROUNDED = 1.0e-3;    // of a moment
+static constexpr double SAME = 1.0e-6;    // numbers of a file have few digits
 
 /// The current properties of the molecule: given properties, and sums over its atoms for the rest.
 static StatedMolecule present(Molecule *molecule)
@@ -75,21 +74,6 @@ static bool differ(const StatedMolecule &a, const StatedMolecule &b, double size
   return any;
 }
 
-/// Empty if a body can have these properties.
-static std::string fault_of(const StatedMolecule &stated, double size)
-{
-  double moments[3], axes[9];
-  principal_axes(stated.inertia, moments, axes);
-  std::sort(moments, moments + 3);
-  if (!(stated.mass > 0.0)) return "a mass that is not positive";
-  if (!(moments[0] >= -LINEAR_FRACTION * moments[2])) return "a negative principal moment";
-  if ((1.0 - ROUNDED) * moments[2] > moments[0] + moments[1])
-    return "a principal moment that is more than the sum of the two others";
-  if (!(length(stated.center) <= 2.0 * size))
-    return "a center of mass that is far away from all its atoms";
-  return "";
-}
-
 static StatedMolecule read_stated(LAMMPS *lmp, Molecule *molecule, const std::string &template_id)
 {
   const int flags[3] = {molecule->massflag, molecule->comflag, molecule->inertiaflag};
@@ -110,10 +94,6 @@ static StatedMolecule read_stated(LAMMPS *lmp, Molecule *molecule, const std::st
   const double size = std::max(molecule->maxextent, molecule->molradius);
   stated.differs = differ(stated, summed, size);
   if (!stated.differs) return stated;
-  const std::string fault = fault_of(stated, size);
-  if (!fault.empty())
-    lmp->error->all(FLERR, "Fix gear/quat mol: molecule template {} states {}, which is impossible",
-                    template_id, fault);
   if (lmp->comm->me == 0)
     utils::logmesg(
         lmp,

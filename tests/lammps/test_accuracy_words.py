@@ -159,7 +159,7 @@ def test_histories_go_on_with_the_other_corrector(lmp, liquid, before, after):
 @pytest.mark.parametrize("formulation", ["first", "second"])
 def test_the_formulations_of_the_paper_have_its_coefficients(lmp_wheel, formulation):
     deck = two_molecules(f"molecule formulation {formulation} {{}}", after="run 0")
-    assert "2 passes, corrector gear" in lmp_wheel.succeed(deck.format("report short")).output
+    assert "2 passes, corrector gear" in lmp_wheel.succeed(deck.format("report yes")).output
     message = "keyword corrector tuned requires formulation momentum: the others have Gear's coefficients"
     lmp_wheel.refuse(deck.format("corrector tuned"), message, ranks=2)
 

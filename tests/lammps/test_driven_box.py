@@ -280,12 +280,11 @@ run 100
 
 
 @pytest.mark.parametrize("ranks, modulus", [(1, 10), (2, 10), (1, 100), (2, 100)])
-def test_a_box_that_jumps_is_named_with_a_remedy(lmp_tree, ranks, modulus):
+def test_a_box_that_jumps_is_named(lmp_tree, ranks, modulus):
     dimer = "dimer\n\n2 atoms\n\nCoords\n\n1 -0.5 0 0\n2 0.5 0 0\n\nTypes\n\n1 1\n2 1\n"
     (lmp_tree.folder / "dimer.mol").write_text(dimer)
     message = "fix p (press/berendsen) has changed the length of the box along x"
     result = lmp_tree.refuse(LIQUID.format(modulus), message, ranks=ranks)
-    assert re.search(r"along x (by a factor of [\d.]+|to a value that is not a number) in step", result.words)
-    factor = float(re.search(r"press/berendsen, ([\d.e+]+) times larger", result.errors[0]).group(1))
-    mended = lmp_tree.succeed(LIQUID.format(factor * modulus), ranks=ranks)
+    assert re.search(r"along x by a factor of (-?[\d.]+|-?nan) in step", result.words)
+    mended = lmp_tree.succeed(LIQUID.format(100 * modulus), ranks=ranks)
     assert "WARNING: Fix gear/quat" not in mended.words

@@ -221,7 +221,7 @@ def test_whatever_moves_the_bodies_in_runs(lmp_wheel, words):
 
 def test_torques_of_atoms(lmp_tree):
     """Torques on dipoles rotate bodies of several atoms, and the line search finds a consistent gradient."""
-    deck = dipoles_deck("report short", moment=0.8)
+    deck = dipoles_deck("report yes", moment=0.8)
     deck = re.sub(r"thermo_style custom .*", "thermo_style custom step pe fnorm", deck)
     deck = re.sub(r"^run .*$", "minimize 0.0 1e-9 5000 20000", deck, flags=re.M)
     table = lmp_tree.succeed(deck).thermo[-1]

@@ -77,18 +77,9 @@ def test_no_is_silent(lmp_tree):
     assert report(lmp_tree, two_molecules("molecule report no")) == []
 
 
-def test_long_says_what_is_left_out(lmp_tree):
-    lines = report(lmp_tree, two_molecules("molecule report long", boundary="f f f"))
-    for line, following in zip(lines, [*lines[1:], ""]):
-        if row := ROW.match(line):
-            assert following.strip().startswith("leaves out ") == (row[2] == "off"), line
-    bound = re.search(r"rounding of a coordinate, at most (\S+) of", "\n".join(lines))
-    assert 0.5 * 2.0**-52 * 5 < float(bound[1]) < 0.5 * 2.0**-52 * 6
-
-
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_another_word_is_refused(lmp_tree, ranks):
-    message = "Fix gear/quat report: unknown value maybe (short, no or long)"
+    message = "Fix gear/quat report: unknown value maybe (yes or no)"
     lmp_tree.refuse(two_molecules("molecule report maybe"), message, ranks=ranks)
 
 
@@ -352,7 +343,7 @@ def dioxide(lmp, before="", fix="gear/quat molecule", pair=LENNARD_JONES, run="r
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("words", ["molecule", "molecule report no", "molecule report long"])
+@pytest.mark.parametrize("words", ["molecule", "molecule report no"])
 def test_pairs_within_bodies_that_interact_are_named_and_mended(lmp_tree, words, ranks):
     first = lmp_tree.succeed(dioxide(lmp_tree, fix=f"gear/quat {words}"), ranks=ranks)
     assert ACTS.findall(first.output) == [("lj/cut", "1", "2", "1")]

@@ -86,7 +86,7 @@ def parse(line):
         ("fix 1 a rigid single reinit on couple xyz", "fix 1 a gear/quat single reinit yes"),
         ("fix 1 a rigid single infile f infile g", "fix 1 a gear/quat single infile g"),
         (
-            "fix 1 a gear/quat molecule tolerance 1e-9 dtmax 1 torque * off off on report long force 1 on off on",
+            "fix 1 a gear/quat molecule tolerance 1e-9 dtmax 1 torque * off off on report no force 1 on off on",
             "fix 1 a gear/quat molecule torque * off off on force 1 on off on",
         ),
         (
@@ -169,11 +169,11 @@ def test_what_is_left_out_is_said():
     for line, words in said.items():
         (note,) = script.translate(parse(line))[1]
         assert words in note
-    line = parse("fix 1 a gear/quat single compensate no tolerance 1e-9 dtmin 1e-5 report long")
+    line = parse("fix 1 a gear/quat single compensate no tolerance 1e-9 dtmin 1e-5 report no")
     own, (note,) = script.for_trials(line)
-    assert own.text() == "fix 1 a gear/quat single compensate no report long"
+    assert own.text() == "fix 1 a gear/quat single compensate no report no"
     assert note.startswith("fix 1 gear/quat: tolerance, dtmin left out, because trials have steps of")
-    plain = parse("fix 1 a gear/quat single report long")
+    plain = parse("fix 1 a gear/quat single report no")
     assert script.for_trials(plain) == (plain, []) and script.translate(plain)[1] == []
 
 
