@@ -400,7 +400,7 @@ void Barostat::refuse_scene() const
                "run_style verlet");
   if (force->kspace && force->kspace->scalar_pressure_flag)
     error->all(FLERR, "Fix gear/quat: constant pressure requires kspace_modify pressure/scalar no");
-  if (asked.shears() && virial->has_torques())
+  if (asked.shears() && over_ranks(MPI_SUM, sites.number_of_extended(), world) > 0)
     error->all(FLERR,
                "Fix gear/quat: shear components of the pressure require atoms that are "
                "points: torques on atoms make the virial of LAMMPS unsymmetric");

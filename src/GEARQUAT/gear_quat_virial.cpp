@@ -100,11 +100,6 @@ bool MolecularVirial::others_ask(bigint step) const
   return false;
 }
 
-bool MolecularVirial::has_torques() const
-{
-  return over_ranks(MPI_SUM, sites.number_of_extended(), world) > 0;
-}
-
 int MolecularVirial::flag() const
 {
   return force->newton_pair ? BY_FORCES : PAIR_BY_PAIR;

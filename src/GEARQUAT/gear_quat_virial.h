@@ -46,8 +46,6 @@ class MolecularVirial : protected Pointers {
   /// The virial in units of mass times velocity squared.
   const Upper &value() const { return virial; }
   template <class V> void fields(V &v) { v(virial); }
-  /// True if torques act on some atoms themselves, which V does not include.  Collective.
-  bool has_torques() const;
   /// True if another compute requests a virial in this step.
   bool others_ask(bigint step) const;
   /// The vflag for the evaluation of forces.
