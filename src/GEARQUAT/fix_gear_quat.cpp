@@ -190,7 +190,6 @@ void FixGearQuat::setup_pre_neighbor()
                 "them");
   }
   ownership.note_box();
-  if (!told_of_ids) told_of_ids = warn_of_molecule_ids(lmp, this, args, ownership);
   step.impose_masks();
   if (defined) step.phase = Phase::COMPARED;
   count_rows();

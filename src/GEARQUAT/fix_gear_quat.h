@@ -132,7 +132,6 @@ class FixGearQuat : public Fix {
   int place = 0;                    ///< number of other fixes whose data of an atom precede in it
   static constexpr int HEAD = 2;    ///< numbers of an atom before its data: their count, and its ID
 
-  bool told_of_ids = false;       ///< a warning about changed molecule IDs was given
   int told_of_groups = 0;         ///< their bits: a warning about parts of bodies was given
   bool atoms_are_free = false;    // their velocities are not yet those of bodies
   bool min_projected = false;     // forces were projected before a minimization begins

@@ -269,29 +269,3 @@ void GearQuat::warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Argu
                         "moves the rest; if all of these atoms are to move as rigid molecules, {}",
                         example, remedy(lmp, fix, args));
 }
-
-/// Bodies are the molecules at the definition of the fix.
-bool GearQuat::warn_of_molecule_ids(LAMMPS *lmp, const Fix *fix, const Arguments &args,
-                                    const Ownership &ownership)
-{
-  const Atom *atom = lmp->atom;
-  if (args.bodystyle != Arguments::BodyStyle::MOLECULE || !atom->molecule_flag) return false;
-  tagint here[2] = {0, 0};    // an atom, and its body
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (const tagint id = ownership.in_body(i) ? ownership.id_of(i) : 0;
-        id != 0 && id <= Arguments::POINTS && atom->molecule[i] != id && atom->tag[i] > here[0]) {
-      here[0] = atom->tag[i];
-      here[1] = id;
-    }
-  const tagint other = over_ranks(MPI_MAX, here[0], lmp->world);
-  if (!other) return false;
-  const tagint body = over_ranks(MPI_MAX, other == here[0] ? here[1] : 0, lmp->world);
-  if (lmp->comm->me == 0)
-    lmp->error->warning(
-        FLERR,
-        "Fix gear/quat {}: atom {} of body {} has another molecule ID than when the "
-        "fix was defined; bodies keep their atoms and IDs: define the fix after "
-        "commands such as set mol and reset_atoms mol",
-        fix->id, other, body);
-  return true;
-}

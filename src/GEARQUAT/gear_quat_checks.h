@@ -39,9 +39,6 @@ void warn_of_shapes(LAMMPS *lmp, const Bodies &bodies, const Ownership &ownershi
 /// Warns of molecules with atoms in bodies and others that no fix moves.
 void warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Arguments &args,
                                const Fleet &fleet, const Ownership &ownership);
-/// Warns if molecule IDs have changed since the bodies were made from them.  Returns true then.
-bool warn_of_molecule_ids(LAMMPS *lmp, const Fix *fix, const Arguments &args,
-                          const Ownership &ownership);
 
 }    // namespace LAMMPS_NS::GearQuat
 

@@ -56,8 +56,9 @@ Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(l
 void Forces::look_at_styles()
 {
   if (lmp->kokkos) why = "the KOKKOS package is on";
-  if (const Style *style = known_run_style(Fact::UNREPEATABLE, update->integrate_style))
-    why = fmt::format("run style {} {}", update->integrate_style, style->reason);
+  const char *run_style = update->integrate_style;
+  if (!utils::strmatch(run_style, "^verlet$") && !utils::strmatch(run_style, "^respa"))
+    why = fmt::format("run style {} may evaluate forces elsewhere", run_style);
   if (force->bond && force->bond->partial_flag)
     why = fmt::format("bonds of style {} may break", force->bond_style);
   if (known_pair(Fact::UNREPEATABLE, force))

@@ -46,11 +46,6 @@ static constexpr Style PAIRS[] = {
     {"^mesocnt/viscous", DISSIPATIVE, "friction between tubes"},
 };
 
-static constexpr Style RUN_STYLES[] = {
-    {"^verlet/split", UNREPEATABLE, "evaluates long-range forces on other ranks"},
-    {"^verlet/lrt", UNREPEATABLE, "evaluates long-range forces in another thread"},
-};
-
 static constexpr char GROUP[] = "give it a group without atoms of bodies";
 static constexpr char TEMP[] =
     "use fix temp/csvr or temp/berendsen, which act on bodies, or fix langevin";
@@ -173,13 +168,6 @@ const Style *GearQuat::known_pair(unsigned any_of, const Force *force)
 {
   return find(PAIRS, any_of, [force](const char *pattern) {
     return force->pair && const_cast<Force *>(force)->pair_match(pattern, 0, 1);
-  });
-}
-
-const Style *GearQuat::known_run_style(unsigned any_of, const std::string &style)
-{
-  return find(RUN_STYLES, any_of, [&style](const char *pattern) {
-    return utils::strmatch(style, pattern);
   });
 }
 

@@ -68,7 +68,6 @@ struct Style {
 /// any of its styles.
 const Style *known(unsigned any_of, const Fix *fix);
 const Style *known_pair(unsigned any_of, const Force *force);
-const Style *known_run_style(unsigned any_of, const std::string &style);
 /// True if a compute accumulates the data of every evaluation of forces.
 bool adds_up(const Compute *compute);
 

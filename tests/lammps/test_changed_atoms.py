@@ -1,4 +1,4 @@
-"""Atoms that commands move relative to their body, and molecule IDs that change after the fix was defined."""
+"""Atoms that commands move relative to their body."""
 
 import re
 
@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scenes import water
 
-OTHER_IDS = re.compile(r"atom (\d+) of body (\d+) has another molecule ID")
 GROUPS = "group one id 4\ngroup two molecule 2\n"
 REBUILT = "atoms were changed since the last run; bodies are rebuilt from them"
 
@@ -22,12 +21,6 @@ def test_a_displaced_atom(lmp_wheel, data, ranks):
     move = "displace_atoms one move 0.1 0.05 0"
     assert REBUILT in said(lmp_wheel, data, move, ranks=ranks)
     assert REBUILT not in said(lmp_wheel, data, move, "reinit no", ranks=ranks)
-
-
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_other_molecule_ids(lmp_wheel, data, ranks):
-    assert OTHER_IDS.findall(said(lmp_wheel, data, "set atom 4 mol 1", ranks=ranks)) == [("4", "2")]  # once in two runs
-    assert not OTHER_IDS.search(said(lmp_wheel, data, "displace_atoms two move 0.02 0 0"))
 
 
 @pytest.mark.parametrize("first", ["", "run 5\n"])
