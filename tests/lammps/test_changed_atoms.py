@@ -1,7 +1,5 @@
 """Atoms that commands move relative to their body."""
 
-import re
-
 import numpy as np
 import pytest
 from scenes import water
