@@ -326,16 +326,16 @@ void Barostat::rescale(double ratio)
   width *= ratio;
 }
 
-StepErrors Barostat::errors(double h) const
+double Barostat::error_of_step(bool as_energy, double h) const
 {
-  StepErrors found;
+  double displacement = 0.0, work = 0.0;
   const Upper push = drive(), mass = masses();
   for (int k = 0; k < Upper::SIZE; ++k) {
     const double strain = std::fabs(local_error[k]);
-    found.length = std::max(found.length, 0.5 * domain->prd[k < 3 ? k : k == 3 ? 1 : 0] * strain);
-    found.energy += mass[k] * strain * (std::fabs(push[k]) + std::fabs(rate[k] / h));
+    displacement = std::max(displacement, 0.5 * domain->prd[k < 3 ? k : k == 3 ? 1 : 0] * strain);
+    work += mass[k] * strain * (std::fabs(push[k]) + std::fabs(rate[k] / h));
   }
-  return found;
+  return as_energy ? work : displacement;
 }
 
 /* ----------------------------------------------------------------------

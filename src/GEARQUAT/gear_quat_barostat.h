@@ -131,8 +131,8 @@ class Barostat : protected Pointers {
   // limits
 
   double longest_step() const;
-  /// The displacement at the faces, and its work.
-  StepErrors errors(double h) const;
+  /// The work of the displacement at the faces, or the displacement.
+  double error_of_step(bool as_energy, double h) const;
   /// Adds the row of the oscillation of the box.
   void add_rate(double h, std::vector<Rate> &table) const;
 

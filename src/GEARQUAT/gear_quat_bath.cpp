@@ -489,7 +489,7 @@ double Bath::longest_step() const
 /// The effect of the errors of the chains in this step on bodies in thermal motion: an error d of
 /// the friction causes the error h d v of a velocity v.  A cold body is insensitive to the friction,
 /// so its errors do not show whether the chains are accurate.
-void Bath::errors(double h, int values, const Include &include) const
+std::array<double, 2> Bath::errors(bool as_energy, double h, int values) const
 {
   const int terms = std::min(values, SECOND_MOST);
   const double kt = temperature.line.kt;
@@ -497,13 +497,12 @@ void Bath::errors(double h, int values, const Include &include) const
   for (int c = 0; c < thermostats; ++c)
     most = std::max(most, chains[c].left_out(target_of(c, 0.0, h), h, terms));
   most *= (double) adams_moulton(terms);
-  StepErrors found;
-  found.energy = std::fabs(h) * 3.0 * kt * most;
-  for (int ibody = 0; ibody < bodies.nmoved() && thermostats > 0; ++ibody) {
-    found.length = h * h * std::sqrt(3.0 * kt / bodies.rigid_of(ibody).mass) * most;
-    include(found);
-  }
-  if (box.moves()) include(box.errors(h));
+  double lightest = HUGE_VAL;
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+    lightest = std::min(lightest, bodies.rigid_of(ibody).mass);
+  return {as_energy ? std::fabs(h) * 3.0 * kt * most
+                    : h * h * std::sqrt(3.0 * kt / lightest) * most,
+          box.moves() ? box.error_of_step(as_energy, h) : 0.0};
 }
 
 std::vector<Rate> Bath::rates(double h) const

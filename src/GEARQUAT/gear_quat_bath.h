@@ -34,7 +34,7 @@
 #include "gear_quat_isokinetic.h"
 #include "gear_quat_temperature.h"
 
-#include <functional>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -92,9 +92,8 @@ class Bath : protected Pointers {
   void rescale(double ratio);
   /// Longest next step; infinite for no limit.  Local.
   double longest_step() const;
-  /// Calls `include` with the errors in this step of h.  Local.
-  using Include = std::function<void(const StepErrors &)>;
-  void errors(double h, int values, const Include &include) const;
+  /// The errors in this step of h of chains and box, as energies or as lengths.  Local.
+  std::array<double, 2> errors(bool as_energy, double h, int values) const;
   /// Rows of the table of rates, for steps of h.  Local.
   std::vector<Rate> rates(double h) const;
 

@@ -56,15 +56,39 @@ void RememberedLoads::prepare(double h)
   if (k >= known) lag_of_dropped = {};
 }
 
-Correction RememberedLoads::correct(const Integrator &integrator, const RigidBody &body,
-                                    double reach, const Load &load, const double *axes,
-                                    double *rows, StepErrors &found) const
+void RememberedLoads::change(bool more, double h, const std::function<void(const Act &)> &each)
+{
+  constexpr int WIDTH = Scheme::SECOND_WIDTH;
+  const int n = values(), top = more ? n : n - 1;
+  const Nodal nodes(ages, top - 2, h);
+  double part[MOST_ROWS];    // of the top row in the rows below it
+  for (int j = 2; j < top; ++j)
+    part[j] = (more ? top : -top) * (top - 1) * nodes.scale * nodes.c[j - 2] / (j * (j - 1));
+  each([&](double *rows) {
+    double *behind = rows + n * WIDTH, *trial = trial_of(rows);
+    const double *row = more ? behind : trial - WIDTH;
+    if (more) {
+      std::rotate(behind, trial, trial + WIDTH);
+      std::fill_n(trial + WIDTH, MORE_ROWS * WIDTH, 0.0);
+    } else {
+      std::rotate(behind - WIDTH, behind, trial);    // the trial row becomes the dropped one
+    }
+    for (int j = 2; j < top; ++j)
+      for (int i = 0; i < WIDTH; ++i) rows[j * WIDTH + i] += part[j] * row[i];
+  });
+  k += more ? 1 : -1;
+  if (more) compares = false;
+}
+
+Correction RememberedLoads::correct(const StepControl &control, const Integrator &integrator,
+                                    const RigidBody &body, double reach, const Load &load,
+                                    const double *axes, double *rows, StepErrors &found) const
 {
   const Row before = accelerations(rows);
   const Correction correction = integrator.correct(body, load, axes, rows);
   Row dropped, change, place, rate;
   std::copy_n(trial_of(rows) + Scheme::SECOND_WIDTH, Scheme::SECOND_WIDTH, dropped.begin());
-  found = errors(integrator, body, reach, load, axes, before, rows, change);
+  found = errors(control, integrator, body, reach, load, axes, before, rows, change);
   for (int i = 0; i < Scheme::SECOND_WIDTH; ++i) {
     place[i] = lag[0] * change[i] - lag_of_dropped[0] * dropped[i];
     rate[i] = lag[1] * change[i] - lag_of_dropped[1] * dropped[i];
@@ -73,9 +97,10 @@ Correction RememberedLoads::correct(const Integrator &integrator, const RigidBod
   return correction;
 }
 
-StepErrors RememberedLoads::errors(const Integrator &integrator, const RigidBody &body,
-                                   double reach, const Load &load, const double *axes,
-                                   const Row &before, double *rows, Row &change) const
+StepErrors RememberedLoads::errors(const StepControl &control, const Integrator &integrator,
+                                   const RigidBody &body, double reach, const Load &load,
+                                   const double *axes, const Row &before, double *rows,
+                                   Row &change) const
 {
   double *trial = trial_of(rows), turn[3];
   const auto size = [&](const double *row) {
@@ -94,33 +119,35 @@ StepErrors RememberedLoads::errors(const Integrator &integrator, const RigidBody
   found.more = std::fabs(of_more) * size(change.data());
   const double most = size(residual.data());
   found.same = std::fabs(corrector.c[1]) * most;
-  found.length = std::fabs(corrector.c[0]) * most;
+  found.error = std::fabs(corrector.c[0]) * most;
+  if (!control.energy) return found;
 
   const BodyState state = integrator.body_state(body, rows);
   Integrator::turn_of(body, axes, &residual[Scheme::ANGULAR_MOMENTUM], turn);
   const double way = GearQuat::length(residual.data()), per_h = 1.0 / integrator.step();
   double rates = body.mass * GearQuat::length(state.velocity) * way;
   for (int i = 0; i < 3; ++i) rates += body.inertia[i] * std::fabs(state.omega_body[i] * turn[i]);
-  found.energy = std::fabs(corrector.c[0]) *
+  found.error = std::fabs(corrector.c[0]) *
           (GearQuat::length(load.force) * way +
            GearQuat::length(load.torque_space) * GearQuat::length(turn)) +
       std::fabs(corrector.c[1] * per_h) * rates;
   return found;
 }
 
-StepErrors RememberedLoads::rounding(const Integrator &integrator, const RigidBody &body,
-                                     double reach, const Load &load, const double *rows)
+double StepControl::counted(const Integrator &integrator, const RigidBody &body, double reach,
+                            const Load &load, const double *rows) const
 {
   constexpr double LAST_DIGIT = std::numeric_limits<double>::epsilon();
   const double *x = rows + Scheme::POSITION;
   const BodyState state = integrator.body_state(body, rows);
-  StepErrors found;
-  found.length =
+  double rounding =
       LAST_DIGIT * (std::max({std::fabs(x[0]), std::fabs(x[1]), std::fabs(x[2])}) + reach);
-  found.energy = found.length * GearQuat::length(load.force) +
-      2.0 * LAST_DIGIT *
-          (translational_energy(body, state.velocity) + rotational_energy(body, state.omega_body));
-  return found;
+  if (energy)
+    rounding = rounding * length(load.force) +
+        2.0 * LAST_DIGIT *
+            (translational_energy(body, state.velocity) +
+             rotational_energy(body, state.omega_body));
+  return eps / (eps + rounding);
 }
 
 void RememberedLoads::conclude(double h)
@@ -136,10 +163,10 @@ StepControl::Next StepControl::repeat(double error, double step, int loads, Grow
   double ratio = SHRINK_FAILED;
   if (std::isfinite(error))
     ratio = std::clamp(SAFETY * allowed(error, loads), SHRINK_FAILED, SHRINK_AT_LEAST);
-  const bool again = growing.failed;    // the loads are of little use
-  growing = {false, true};
+  const bool again = growing == Growth::FAILED;    // the loads are of little use
+  growing = Growth::FAILED;
   return {std::copysign(std::max(shortest, ratio * std::fabs(step)), step),
-          again && loads > 1 ? loads - 1 : loads, false};
+          again && loads > 1 ? loads - 1 : loads};
 }
 
 StepControl::Next StepControl::next(const StepErrors &errors, double step,
@@ -147,18 +174,17 @@ StepControl::Next StepControl::next(const StepErrors &errors, double step,
                                     double farthest) const
 {
   const int now = remembered.loads();
-  const double ratio = SAFETY * allowed(error(errors), now);
-  const int loads = growing.starts ? std::min(now + 1, MOST_LOADS) : remembered.better(errors);
-  growing.starts = growing.starts && ratio >= GROWS_FAST;
-  const double growth = growing.failed ? 1.0 : growing.starts ? GROWTH_OF_START : GROWTH;
-  growing.failed = false;
+  const double ratio = SAFETY * allowed(errors.error, now);
+  const bool starts = growing == Growth::START, goes_on = starts && ratio >= GROWS_FAST;
+  const int loads = starts ? std::min(now + 1, MOST_LOADS) : remembered.better(errors);
+  const double growth = growing == Growth::FAILED ? 1.0 : goes_on ? GROWTH_OF_START : GROWTH;
+  growing = goes_on ? Growth::START : Growth::STEADY;
   const double before = std::fabs(step), clear = CLEAR_OF_LIMIT * farthest;
   double size = std::min(std::clamp(ratio, SHRINK, growth) * before,
                          before > farthest ? clear : std::max(clear, before));
-  const bool held = size < shortest;
   size = std::max(size, shortest);
   if (longest > 0.0) size = std::min(size, longest);
-  return {std::copysign(size, step), loads, held};
+  return {std::copysign(size, step), loads};
 }
 
 double StepControl::first_step(double jerk, double speed, double mass) const

@@ -31,27 +31,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace LAMMPS_NS::GearQuat {
 
 /// Of a step of one body, or the largest of all bodies.
 struct StepErrors {
-  /// As a length: of the position, or of the orientation times the reach of the body, whichever is
-  /// larger.  As an energy: the change of energy due to the errors of pose and velocities.
-  double length = 0.0, energy = 0.0;
+  double error = 0.0;    ///< in the measure of the tolerance
   /// The effect of the last term of the polynomial with one load fewer, as many, and one more.
   double fewer = 0.0, same = 0.0, more = 0.0;
 
   void include(const StepErrors &other)
   {
-    length = std::max(length, other.length);
-    energy = std::max(energy, other.energy);
+    error = std::max(error, other.error);
     fewer = std::max(fewer, other.fewer);
     same = std::max(same, other.same);
     more = std::max(more, other.more);
   }
 };
+
+struct StepControl;
 
 class RememberedLoads {
  public:
@@ -98,19 +98,15 @@ class RememberedLoads {
 
   /// Integrator::correct(), and the errors of the step.  reach: displacement of the outermost part
   /// of the body per radian.
-  Correction correct(const Integrator &integrator, const RigidBody &body, double reach,
-                     const Load &load, const double *axes, double *rows, StepErrors &found) const;
+  Correction correct(const StepControl &control, const Integrator &integrator,
+                     const RigidBody &body, double reach, const Load &load, const double *axes,
+                     double *rows, StepErrors &found) const;
 
   /// The errors of a step whose predicted accelerations were `before`.  axes: of any pose of the
   /// step.  change: of the trial row.
-  StepErrors errors(const Integrator &integrator, const RigidBody &body, double reach,
-                    const Load &load, const double *axes, const Row &before, double *rows,
-                    Row &change) const;
-
-  /// The part of the errors that no step is short enough to remove: forces are evaluated at rounded
-  /// coordinates.
-  static StepErrors rounding(const Integrator &integrator, const RigidBody &body, double reach,
-                             const Load &load, const double *rows);
+  StepErrors errors(const StepControl &control, const Integrator &integrator, const RigidBody &body,
+                    double reach, const Load &load, const double *axes, const Row &before,
+                    double *rows, Row &change) const;
 
   /// A step of h is complete.
   void conclude(double h);
@@ -124,29 +120,8 @@ class RememberedLoads {
 
   /// One load more, after a step, or one fewer, between steps of h.  each(act) calls act(rows) for
   /// all histories.
-  template <class Each> void change(bool more, double h, Each each)
-  {
-    constexpr int WIDTH = Scheme::SECOND_WIDTH;
-    const int n = values(), top = more ? n : n - 1;
-    const Nodal nodes(ages, top - 2, h);
-    double part[MOST_ROWS];    // of the top row in the rows below it
-    for (int j = 2; j < top; ++j)
-      part[j] = (more ? top : -top) * (top - 1) * nodes.scale * nodes.c[j - 2] / (j * (j - 1));
-    each([&](double *rows) {
-      double *behind = rows + n * WIDTH, *trial = trial_of(rows);
-      const double *row = more ? behind : trial - WIDTH;
-      if (more) {
-        std::rotate(behind, trial, trial + WIDTH);
-        std::fill_n(trial + WIDTH, MORE_ROWS * WIDTH, 0.0);
-      } else {
-        std::rotate(behind - WIDTH, behind, trial);    // the trial row becomes the dropped one
-      }
-      for (int j = 2; j < top; ++j)
-        for (int i = 0; i < WIDTH; ++i) rows[j * WIDTH + i] += part[j] * row[i];
-    });
-    k += more ? 1 : -1;
-    if (more) compares = false;
-  }
+  using Act = std::function<void(double *)>;
+  void change(bool more, double h, const std::function<void(const Act &)> &each);
 
   template <class V> void fields(V &v) { v(k, known, compares, ages); }
 
@@ -191,16 +166,13 @@ class RememberedLoads {
   static double size(const RigidBody &body, double reach, const double *axes, const double *row);
 };
 
-/// What limits the growth of the next step.
-struct Growth {
-  bool starts = true;     ///< the number of loads increases in every step
-  bool failed = false;    ///< the present step was repeated
-
-  template <class V> void fields(V &v) { v(starts, failed); }
-};
+/// What limits the growth of the next step.  START: the number of loads increases in every step;
+/// FAILED: the present step was repeated.
+enum class Growth { START, STEADY, FAILED };
 
 /// The control law.  A step whose error exceeds eps fails; if the host can undo it, it repeats it
-/// with a shorter one.
+/// with a shorter one.  An error is a length, of the position or of the orientation times the reach
+/// of the body, whichever is larger; or an energy, the change due to the errors of pose and velocities.
 struct StepControl {
   static constexpr double SAFETY = 0.9;    ///< relative to a step with the error eps
   /// Limits of new step / old step: of an accepted step, of a start, and of a failed step.
@@ -215,16 +187,10 @@ struct StepControl {
   bool energy = false;                     ///< which of the two
   double shortest = 0.0, longest = 0.0;    ///< limits of the step; longest 0: none
 
-  double error(const StepErrors &errors) const { return energy ? errors.energy : errors.length; }
-
-  /// The errors that count: rounding does not decrease with the step.
-  StepErrors counted(StepErrors errors, const StepErrors &rounding) const
-  {
-    const double part = eps / (eps + error(rounding));
-    errors.length *= part;
-    errors.energy *= part;
-    return errors;
-  }
+  /// The part of the error of a corrected body that counts.  No step is short enough to remove the
+  /// rest: forces are evaluated at rounded coordinates.
+  double counted(const Integrator &integrator, const RigidBody &body, double reach,
+                 const Load &load, const double *rows) const;
 
   /// True if a step must be repeated with a shorter step.
   bool fails(double error, double step) const
@@ -241,13 +207,13 @@ struct StepControl {
   struct Next {
     double step;
     int loads;
-    bool held;    ///< limited from below: the error requires a shorter step
   };
 
   /// Another try.
   Next repeat(double error, double step, int loads, Growth &growing) const;
 
-  /// The step after one with these errors.  farthest: longest step, for any errors.
+  /// The step after one with these errors; `shortest` if they require a shorter one.  farthest:
+  /// longest step, for any errors.
   Next next(const StepErrors &errors, double step, const RememberedLoads &remembered,
             Growth &growing, double farthest = std::numeric_limits<double>::infinity()) const;
 

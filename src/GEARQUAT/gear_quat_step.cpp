@@ -106,7 +106,7 @@ void Step::init()
                      "({}), which follows the time step of this fix",
                      other->id, other->style);
   }
-  if (tolerance && started) tolerance->keep_step(false);
+  if (tolerance && started) tolerance->keep_step();
   follow_length();
 }
 

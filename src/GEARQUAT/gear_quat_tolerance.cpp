@@ -67,14 +67,9 @@ void TimeStep::set(double step)
   output->reset_dt();
 }
 
-double TimeStep::beginning() const
+double TimeStep::time_of(bigint step) const
 {
-  return update->atime + (update->ntimestep - 1 - update->atimestep) * update->dt;
-}
-
-double TimeStep::end() const
-{
-  return update->atime + (update->ntimestep - update->atimestep) * update->dt;
+  return update->atime + (step - update->atimestep) * update->dt;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -96,7 +91,7 @@ Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const St
 void Tolerance::begin(double permitted, const Fix *first)
 {
   record = Record();
-  growing = Growth();
+  growing = Growth::START;
   remembered.begin();
   present.rows = remembered.values();
   const double given = update->dt, speed = over_ranks(MPI_MAX, largest_speed(), world);
@@ -114,7 +109,9 @@ void Tolerance::begin(double permitted, const Fix *first)
     return;
   }
   time_step.change_begun(std::copysign(size, given));
-  tell_of_first_step(given);
+  if (comm->me == 0)
+    utils::logmesg(lmp, "Fix gear/quat tolerance: first step {:.3g} instead of {:.3g}\n",
+                   update->dt, given);
 }
 
 /// The first step of histories with the present loads alone.  Forces are assumed to change by their
@@ -135,14 +132,6 @@ double Tolerance::first_step() const
     if (jerk > 0.0) least = std::min(least, control.first_step(jerk, speed, body.rigid.mass));
   }
   return over_ranks(MPI_MIN, least, world);
-}
-
-/// Reports the first step; instead: the length in LAMMPS.
-void Tolerance::tell_of_first_step(double instead) const
-{
-  if (comm->me == 0)
-    utils::logmesg(lmp, "Fix gear/quat tolerance: first step {:.3g} instead of {:.3g}\n",
-                   update->dt, instead);
 }
 
 /// A fix that has begun this step before `begins` begins it, null for none.
@@ -168,21 +157,15 @@ void Tolerance::change_loads(int loads)
   present.rows = remembered.values();
 }
 
-void Tolerance::keep_step(bool begun)
+void Tolerance::keep_step()
 {
   if (update->dt == time_step.length()) return;
-  if (const Fix *other = begun ? integrated_before(fix) : nullptr)
-    error->all(
-        FLERR,
-        "Fix gear/quat tolerance: the time step was changed before a run with pre no, and fix "
-        "{} ({}) has begun the first step with it; leave out pre no",
-        other->id, other->style);
   if (comm->me == 0)
     utils::logmesg(lmp,
                    "Fix gear/quat tolerance: keeping time step {:.3g}; the timestep command "
                    "({:.3g}) is ignored\n",
                    time_step.length(), update->dt);
-  begun ? time_step.change_begun(time_step.length()) : time_step.change(time_step.length());
+  time_step.change(time_step.length());
 }
 
 /* ----------------------------------------------------------------------
@@ -193,11 +176,9 @@ double Tolerance::element(int n) const
 {
   const Record &all = record;
   const double steps = std::max(all.steps, 1.0);
-  return std::array<double, ELEMENTS>{update->dt,        all.smallest,
-                                      all.time / steps,  (double) remembered.loads(),
-                                      all.loads / steps, all.largest,
-                                      all.held,          all.repeated,
-                                      all.last_length,   all.last_energy * force->mvv2e}[n];
+  return std::array<double, ELEMENTS>{
+      update->dt,  all.smallest, all.time / steps, (double) remembered.loads(), all.loads / steps,
+      all.largest, all.held,     all.repeated,     all.last * unit_of_error()}[n];
 }
 
 void Tolerance::fields(Fields &v)
@@ -227,10 +208,12 @@ static constexpr double ROUNDING_OF_TIME = 1.0e-6;
 
 void Tolerance::begin_step()
 {
-  keep_step(true);
+  if (update->dt != time_step.length())
+    error->all(FLERR,
+               "Fix gear/quat tolerance: the time step was changed before a run with pre no; leave "
+               "out pre no");
   if (update->ntimestep == update->firststep + 1) begin_run();
   tries = 0;
-  begun_with = update->dt;
   refuse_frozen();
   if (forces) bodies.keep_histories();
 }
@@ -239,7 +222,10 @@ void Tolerance::begin_step()
 void Tolerance::begin_run()
 {
   forces = std::make_unique<Forces>(lmp, std::vector<const Fix *>{fix});
-  const std::string why = reason_not_to_repeat();
+  std::string why = forces->reason();
+  for (const auto *one : modify->get_compute_list())
+    if (why.empty() && adds_up(one))
+      why = fmt::format("compute {} ({}) adds up every evaluation of forces", one->id, one->style);
   if (!why.empty()) {
     forces.reset();
     if (comm->me == 0 && why != told)
@@ -255,23 +241,23 @@ Correction Tolerance::correct(const Integrator &integrator, int ibody, const Loa
 {
   StepErrors one;
   const Body &body = bodies.body_at(ibody);
-  const Correction correction = remembered.correct(integrator, body.rigid, body.reach(), load,
-                                                   bodies.axes(ibody), bodies.history(ibody), one);
-  include(control.counted(one, rounding(integrator, ibody, load)));
+  const Correction correction =
+      remembered.correct(control, integrator, body.rigid, body.reach(), load, bodies.axes(ibody),
+                         bodies.history(ibody), one);
+  include(integrator, ibody, load, one);
   return correction;
 }
 
-StepErrors Tolerance::rounding(const Integrator &integrator, int ibody, const Load &load) const
+void Tolerance::include(const Integrator &integrator, int ibody, const Load &load, StepErrors one)
 {
   const Body &body = bodies.body_at(ibody);
-  return RememberedLoads::rounding(integrator, body.rigid, body.reach(), load,
-                                   bodies.history(ibody));
+  one.error *= control.counted(integrator, body.rigid, body.reach(), load, bodies.history(ibody));
+  include(one);
 }
 
 void Tolerance::include(StepErrors one)
 {
-  double &error = control.energy ? one.energy : one.length;
-  if (!std::isfinite(error)) error = std::numeric_limits<double>::infinity();
+  if (!std::isfinite(one.error)) one.error = std::numeric_limits<double>::infinity();
   errors.include(one);
 }
 
@@ -289,14 +275,13 @@ void Tolerance::note_correction(const Integrator &integrator, const Bath &bath)
       const Body &body = bodies.body_at(ibody);
       const Load load = bodies.acting(ibody);
       RememberedLoads::Row change;
-      const StepErrors one =
-          remembered.errors(integrator, body.rigid, body.reach(), load, bodies.axes(ibody),
-                            predicted[ibody], bodies.history(ibody), change);
-      include(control.counted(one, rounding(integrator, ibody, load)));
+      include(integrator, ibody, load,
+              remembered.errors(control, integrator, body.rigid, body.reach(), load,
+                                bodies.axes(ibody), predicted[ibody], bodies.history(ibody),
+                                change));
     }
-  bath.errors(update->dt, integrator.values(), [this](const StepErrors &one) {
-    include(one);
-  });
+  for (const double error : bath.errors(control.energy, update->dt, integrator.values()))
+    include({error});
 }
 
 /// An upper limit for the speeds of sites on this rank.
@@ -311,20 +296,15 @@ double Tolerance::largest_speed() const
   return largest;
 }
 
-/// Steps in which LAMMPS does not test the neighbor lists.
-double Tolerance::steps_unseen() const
-{
-  const double every = neighbor->every;
-  if (neighbor->build_once) return 1.0;
-  return every * std::max(1.0, std::ceil(neighbor->delay / every));
-}
-
 /// Maximum displacement of a site in a step, infinite if the range of the forces is unknown.
 double Tolerance::limit_of_motion() const
 {
   double range = neighbor->skin > 0.0 ? neighbor->skin : std::numeric_limits<double>::infinity();
   if (force->pair && force->pair->cutforce > 0.0) range = std::min(range, force->pair->cutforce);
-  return range * std::min(PART_OF_SKIN, PART_UNSEEN / steps_unseen());
+  const double every = neighbor->every;    // steps in which LAMMPS does not test neighbor lists:
+  const double unseen =
+      neighbor->build_once ? 1.0 : every * std::max(1.0, std::ceil(neighbor->delay / every));
+  return range * std::min(PART_OF_SKIN, PART_UNSEEN / unseen);
 }
 
 /// Without motion the effect of a longer step is unknown.
@@ -335,22 +315,21 @@ double Tolerance::farthest_step(double speed) const
 
 bool Tolerance::accepts()
 {
-  double here[] = {errors.length,  errors.energy, errors.fewer,
-                   errors.same,    errors.more,   bodies.fresh.empty() ? 0.0 : 1.0,
-                   largest_speed()};
+  double here[] = {
+      errors.error,   errors.fewer, errors.same, errors.more, bodies.fresh.empty() ? 0.0 : 1.0,
+      largest_speed()};
   const auto all = over_ranks(MPI_MAX, here, world);
-  errors = {all[0], all[1], all[2], all[3], all[4]};
-  fresh = all[5] != 0.0;
-  speed = all[6];
-  if (forces && control.fails(step_error(), update->dt) && tries < MOST_TRIES) {
+  errors = {all[0], all[1], all[2], all[3]};
+  fresh = all[4] != 0.0;
+  speed = all[5];
+  if (forces && control.fails(errors.error, update->dt) && tries < MOST_TRIES) {
     ++tries;
     record.repeated += 1.0;
-    failed = control.repeat(step_error(), update->dt, remembered.loads(), growing);
+    failed = control.repeat(errors.error, update->dt, remembered.loads(), growing);
     errors = StepErrors();
     return false;
   }
-  if (!std::isfinite(step_error()) || tries == MOST_TRIES) refuse_lost();
-  if (record.steps == 0.0 && tries > 0) tell_of_first_step(begun_with);
+  if (!std::isfinite(errors.error) || tries == MOST_TRIES) refuse_lost();
   remembered.conclude(update->dt);
   return true;
 }
@@ -363,7 +342,7 @@ void Tolerance::refuse_lost() const
         "Fix gear/quat tolerance: step {} was tried {} times, and its error is {:.2g} still at a "
         "time step of {:.3g}; the forces are not continuous, or the tolerance is smaller "
         "than their rounding",
-        update->ntimestep, tries + 1, shown(step_error()), update->dt);
+        update->ntimestep, tries + 1, errors.error * unit_of_error(), update->dt);
   error->all(FLERR,
              "Fix gear/quat tolerance: the estimated error of step {} is not a number; the forces "
              "are wrong, or the motion is lost: use a smaller tolerance",
@@ -374,17 +353,14 @@ void Tolerance::refuse_lost() const
 void Tolerance::refuse_frozen() const
 {
   const double begun = time_step.beginning();
-  const auto refuse = [&](const char *keyword, double interval, const char *remedy) {
-    if (interval > 0.0 && begun + interval == begun)
-      error->all(
-          FLERR,
-          "Fix gear/quat {}: in step {} an interval of {:.3g} is below the last digit of the "
-          "time {:.9g}, which would not advance; {}",
-          keyword, update->ntimestep, interval, begun, remedy);
-  };
-  refuse("dtmax", control.longest, "use a larger dtmax");
-  refuse("every/time", every_time, "use a larger interval");
-  refuse("tolerance", std::fabs(update->dt), "use a larger tolerance, or dtmin");
+  double least = std::fabs(update->dt);
+  if (every_time > 0.0) least = std::min(least, every_time);
+  if (begun + least == begun)
+    error->all(
+        FLERR,
+        "Fix gear/quat tolerance: in step {} an interval of {:.3g} is below the last digit of "
+        "the time {:.9g}, which would not advance; use a larger tolerance, dtmax or every/time",
+        update->ntimestep, least, begun);
 }
 
 void Tolerance::shorten_loads()
@@ -398,11 +374,6 @@ void Tolerance::shorten_step()
   refuse_frozen();
 }
 
-double Tolerance::shown(double error) const
-{
-  return control.energy ? error * force->mvv2e : error;
-}
-
 double Tolerance::choose(double permitted)
 {
   const double step = update->dt;
@@ -411,24 +382,23 @@ double Tolerance::choose(double permitted)
       control.next(errors, step, remembered, growing, std::min(permitted, farthest_step(speed)));
   if (fresh) {    // fresh histories have the present load only
     next.loads = 1;
-    growing = Growth();
+    growing = Growth::START;
     next.step = std::copysign(std::min(std::fabs(next.step), first_step()), step);
   }
-  if (next.held) {
+  if (std::fabs(next.step) == control.shortest) {
     record.held += 1.0;
-    if (!warned_held && comm->me == 0)
+    if (record.held == 1.0 && comm->me == 0)
       error->warning(
           FLERR,
           "Fix gear/quat tolerance: after step {} dtmin keeps the time step at {:.3g}, longer than "
           "the tolerance or the motion permits; further such steps are counted",
           update->ntimestep, control.shortest);
-    warned_held = true;
   }
   errors = StepErrors();
   change_loads(next.loads);
   if (fresh) remembered.begin();
   fresh = false;
-  return even(next.step, time_step.end());
+  return even(next.step, time_step.time_of(update->ntimestep));
 }
 
 /// The next time at which a step has to end, infinite if there is none: a multiple of every_time,
@@ -492,23 +462,13 @@ void Tolerance::note_step(double size)
   record.steps += 1.0;
   record.time += size;
   record.loads += remembered.loads();
-  record.largest = std::max(record.largest, step_error() / control.eps);
-  record.last_length = errors.length;
-  record.last_energy = errors.energy;
+  record.largest = std::max(record.largest, errors.error / control.eps);
+  record.last = errors.error;
 }
 
 /* ----------------------------------------------------------------------
    another evaluation of the forces
 ------------------------------------------------------------------------- */
-
-std::string Tolerance::reason_not_to_repeat() const
-{
-  if (!forces->reason().empty()) return forces->reason();
-  for (const auto *one : modify->get_compute_list())
-    if (adds_up(one))
-      return fmt::format("compute {} ({}) adds up every evaluation of forces", one->id, one->style);
-  return "";
-}
 
 void Tolerance::evaluate(int vflag)
 {

@@ -6,18 +6,15 @@
 /* Keyword tolerance inside LAMMPS: the largest errors of all bodies on all ranks, the control
    law of gear_quat_remembered_loads.h, and the outputs that depend on times.
 
-   When histories start: begin().
-   In every step: begin_step(); prepare() before the prediction; correct() for every body, or
-   note_prediction() and note_correction() around the correction by a bath; and accepts().  If a
-   step is rejected, the caller restores the histories, calls shorten_loads() and shorten_step(), and
-   repeats it.  At the end of the step: choose(), TimeStep::change(), and order_output().  After
-   prepare(), shorten_loads() and choose() a new integrator is needed.  In addition,
-   announce_output() before the first step of a run.
+     begin()        histories start
+     begin_step(), prepare()
+     predict        LAMMPS: neighbors, forces
+     correct()      of each body, or note_prediction() and note_correction() around a bath
+     accepts()      error too large: [undo, shorten_loads(), shorten_step(), prepare(), predict,
+                    evaluate()], correct again, all during final_integrate()
+     choose(), TimeStep::change(), order_output()
 
-   A step is repeated with another length during final_integrate():
-
-     predict  LAMMPS: neighbors, forces  correct
-     error too large: [undo, shorten, predict, evaluate()]  correct
+   After prepare(), shorten_loads() and choose() a new integrator is needed.
 
    Nothing else in LAMMPS has used the step at this point: only this fix moves atoms, and the forces
    of other fixes are functions of positions and velocities (Forces).  Neighbor lists of the first
@@ -29,17 +26,19 @@
 
 #include "gear_quat_bath.h"
 #include "gear_quat_forces.h"
+#include "gear_quat_remembered_loads.h"
+
+#include "force.h"
+#include "update.h"
 
 #include <memory>
 #include <string>
 
 namespace LAMMPS_NS::GearQuat {
 
-/// The length of the step in histories and in LAMMPS. Only this class changes these lengths.
-///
-/// Histories have the length of the last or of the current step.  After the command timestep LAMMPS'
-/// length may differ; then the histories follow: their owner rescales them by follow().  With keyword
-/// tolerance, change() and change_begun() set the length of LAMMPS and of all fixes.
+/// The length of the step in histories and in LAMMPS.  After the command timestep LAMMPS' length may
+/// differ; then the histories follow.  With keyword tolerance this class sets the length of LAMMPS
+/// and of all fixes.
 class TimeStep : protected Pointers {
  public:
   explicit TimeStep(LAMMPS *lmp) : Pointers(lmp) {}
@@ -62,11 +61,10 @@ class TimeStep : protected Pointers {
   /// steps before it.
   void change_begun(double step);
 
-  // times
-
-  /// The times at the beginning and at the end of the present step.
-  double beginning() const;
-  double end() const;
+  /// The time at a number of the step, near the present one.
+  double time_of(bigint step) const;
+  /// The time at the beginning of the present step.
+  double beginning() const { return time_of(update->ntimestep - 1); }
 
   template <class V> void fields(V &v) { v(h, last); }
 
@@ -79,15 +77,15 @@ class TimeStep : protected Pointers {
 class Tolerance : protected Pointers {
  public:
   /// Elements of the fix's vector, after the elements of Outputs, as listed in the manual.
-  static constexpr int ELEMENTS = 10;
+  static constexpr int ELEMENTS = 9;
 
   /// Sums for the outputs.
   struct Record {
-    double steps, time, smallest, loads, largest, held, repeated, last_length, last_energy;
+    double steps, time, smallest, loads, largest, held, repeated, last;
 
     template <class V> void fields(V &v)
     {
-      v(steps, time, smallest, loads, largest, held, repeated, last_length, last_energy);
+      v(steps, time, smallest, loads, largest, held, repeated, last);
     }
   };
 
@@ -105,8 +103,7 @@ class Tolerance : protected Pointers {
   /// gear/quat, which starts the histories of all before it begins the step.  Collective.
   void begin(double permitted, const Fix *first);
 
-  /// Begins a step, with the histories of the last step.  After a run with `pre no` the length of
-  /// the histories is restored; ends the run if other atoms have moved already.  Collective.
+  /// Begins a step, with the histories of the last step.  Collective.
   void begin_step();
   /// Weights for a step of the present length.
   void prepare() { remembered.prepare(time_step.length()); }
@@ -135,9 +132,9 @@ class Tolerance : protected Pointers {
   /// With thermo 0, prints thermo output at the multiples of every_time, if the present step ends
   /// at one of them.  To be called after TimeStep::change().
   void order_output();
-  /// Before a run, or when its first step has begun: the timestep command sets only the first step of
-  /// histories, which keep their length.
-  void keep_step(bool begun);
+  /// Before a run: the timestep command sets only the first step of histories, which keep their
+  /// length.
+  void keep_step();
 
   double element(int n) const;
   void fields(Fields &v);
@@ -150,37 +147,31 @@ class Tolerance : protected Pointers {
   StepControl control;
   double every_time;
   RememberedLoads remembered;
-  Growth growing;
+  Growth growing = Growth::START;
   std::unique_ptr<Forces> forces;            ///< null if no step of the run can be repeated
   std::string told;                          ///< the last reported reason for that
   std::vector<RememberedLoads::Row> predicted;    ///< accelerations of bodies corrected together
   StepErrors errors;           ///< of the bodies corrected so far; of all, once judged
   double speed = 0.0;          ///< upper limit of the speeds of all sites
-  double begun_with = 0.0;     ///< length of the first try of the present step
   int tries = 0;               ///< failed tries of the present step
   StepControl::Next failed;    ///< the next try
   bool fresh = false;          ///< bodies were inserted in this step, set by the test of the error
-  bool warned_held = false;    ///< warned of a step limited from below
   bigint announced = -1;       ///< the last step of announce_output()
   Record record = {};
 
   void change_loads(int loads);
   const Fix *integrated_before(const Fix *begins) const;
   double largest_speed() const;
-  double farthest_step(double speed) const;
-  double steps_unseen() const;
   double limit_of_motion() const;
+  double farthest_step(double speed) const;
   double next_output(double step, double now) const;
   double even(double step, double now) const;
-  double step_error() const { return control.error(errors); }
+  /// In the units of the user.
+  double unit_of_error() const { return control.energy ? force->mvv2e : 1.0; }
   void include(StepErrors one);
-  StepErrors rounding(const Integrator &integrator, int ibody, const Load &load) const;
+  void include(const Integrator &integrator, int ibody, const Load &load, StepErrors one);
   double first_step() const;
   void begin_run();
-  std::string reason_not_to_repeat() const;
-  void tell_of_first_step(double instead) const;
-  /// An error in the units of the user.
-  double shown(double error) const;
   void refuse_lost() const;
   void refuse_frozen() const;
   void note_step(double size);

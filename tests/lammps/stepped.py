@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scenes import frames, placed
 
-ELEMENTS = [f"f_move[{k}]" for k in range(9, 19)]
-NEXT, SMALLEST, MEAN, LOADS, MEAN_LOADS, LARGEST, HELD, REPEATED, LENGTH, ENERGY = ELEMENTS
+ELEMENTS = [f"f_move[{k}]" for k in range(9, 18)]
+NEXT, SMALLEST, MEAN, LOADS, MEAN_LOADS, LARGEST, HELD, REPEATED, LAST = ELEMENTS
 
 
 def tables(result):

@@ -120,17 +120,16 @@ def test_unchanged_runs_go_on(lmp_tree, data):
 
 
 def test_a_time_step_that_a_run_is_not_set_up_for(lmp_tree, data):
-    """The fix keeps the step of tolerance also with pre no."""
+    """The fix keeps the step of tolerance, and refuses another one with pre no."""
     columns = "time f_move[9] f_move[14]"
-    text = deck(data, "tolerance 1e-9", run="run 60\n{}\nrun 40 pre no", columns=columns)
+    text = deck(data, "tolerance 1e-9", run="run 60\n{}\nrun 40", columns=columns)
     changed = text.replace("\nrun 40", "\ntimestep 8.0\nrun 40")
     plain, other = lmp_tree.succeed(text), lmp_tree.succeed(changed)
     assert "keeping time step " in other.stdout
     assert other.thermo[-1]["f_move[14]"][-1] < 100
     for column in ("Time", "TotEng"):
         assert other.thermo[-1][column] == plain.thermo[-1][column]
-    early = changed.replace("fix move all", "group none empty\nfix early none nve\nfix move all")
-    lmp_tree.refuse(early, "fix early (nve) has begun the first step")
+    lmp_tree.refuse(changed.replace("run 40", "run 40 pre no"), "was changed before a run with pre no")
 
 
 # --- first forces --------------------------------------------------------------------------------

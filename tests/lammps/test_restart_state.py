@@ -156,7 +156,6 @@ NOT_IN_A_FILE = {
     "box Box": {COMMAND: "fixed", DERIVED: "m inverse change inverse_change"},
     "virial MolecularVirial": {COMMAND: "id", OTHERS: "fix sites"},
     "tolerance TimeStep": {},
-    "remembered_loads Growth": {},
     "remembered_loads RememberedLoads": {
         COMMAND: "carries",
         STEP: "corrector to_trial of_fewer of_more lag lag_of_dropped",
@@ -171,8 +170,8 @@ NOT_IN_A_FILE = {
         OTHERS: "fix bodies time_step",
         DERIVED: "present",
         RUN: "forces announced",
-        STEP: "predicted errors speed begun_with tries failed fresh",
-        MESSAGES: "warned_held told",
+        STEP: "predicted errors speed tries failed fresh",
+        MESSAGES: "told",
     },
     "temperature Temperature": {
         COMMAND: "subtracted stop of_bodies words of_pressure",

@@ -125,10 +125,10 @@ def overlapping(deck):
 def test_an_overlap_under_tolerance(lmp_tree, gas):
     words = "temp 1.0 1.0 0.5 tolerance 1e-6 dtmax 0.02"
     (table,) = lmp_tree.succeed(overlapping(gas(words, n=9, soft=300.0, run="run 500"))).thermo
-    taken = np.array(table["f_move[19]"])
+    taken = np.array(table["f_move[18]"])
     assert taken[-1] > 15000.0
     assert np.ptp(table["Econserve"]) < 1e-4 * taken[-1]
-    assert table["f_move[18]"][-1] < 10  # repeated steps
+    assert table["f_move[16]"][-1] < 0.05 * 500  # repeated steps
     assert table["Time"][-1] > 0.2
 
 

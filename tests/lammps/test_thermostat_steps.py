@@ -18,7 +18,7 @@ from heated import COMMON, END, KINDS, cluster, continued, whole_and_halves
 from stepped import ELEMENTS, LARGEST, LOADS, NEXT, REPEATED, agree_on_ranks, tables
 
 TEMP = "temp 0.5 0.5 0.3"
-TAKEN, XI = "f_move[19]", "f_move[23]"  # with tolerance
+TAKEN, XI = "f_move[18]", "f_move[22]"  # with tolerance
 BESIDE = " ".join(["econserve ecouple", *ELEMENTS, TAKEN, XI])
 UNTIL = "variable now equal time\nfix stop all halt 1 v_now >= {} error continue\nrun 5000"
 
@@ -133,7 +133,7 @@ def test_another_target_starts_anew(lmp_tree):
 FREEDOMS, TARGET, DAMP = 6, 0.5, 0.3
 
 
-def coasting(words, spin, run=UNTIL.format(9.0), columns=f"f_move[24] {LARGEST}", dt=0.004):
+def coasting(words, spin, run=UNTIL.format(9.0), columns=f"f_move[23] {LARGEST}", dt=0.004):
     """Two molecules that never collide; spin: of each about the z axis."""
     bodies, velocities = [], []
     for side in (-1.0, 1.0):
@@ -177,7 +177,7 @@ def test_a_rotation_that_is_almost_zero_grows_as_it_should(lmp_tree, unit):
     eps, errors = ("1e-6", "1e-9"), []
     decks = [coasting(f"thermostat separate tolerance {e} {unit}", 1e-9) for e in eps]
     for run in tables(lmp_tree.succeed(one_after_the_other(decks))):
-        kinetic, xi = run["f_move[2]"], run["f_move[24]"]
+        kinetic, xi = run["f_move[2]"], run["f_move[23]"]
         log_kinetic, expected = warming(run["Time"], kinetic[0])
         assert kinetic[0] < 1e-17 and 0.1 < kinetic[-1] < 10.0
         assert run[LARGEST][-1] <= 1

@@ -273,7 +273,7 @@ def test_a_time_that_stands_still_is_refused(lmp_tree, bound):
     again = "unfix move\nfix move all gear/quat molecule tolerance 1e-8 {} {}\nrun 10"
     deck = meeting(1e-8, "lj/charmm/coul/charmm 4.0 6.0", f"run 10\n{again}")
     assert "would not advance" not in lmp_tree.succeed(deck.format(bound, 1e-9)).output
-    said = f"{bound}: in step 11 an interval of 1e-20 is below the last digit of the time 0."
+    said = f"tolerance: in step 11 an interval of 1e-20 is below the last digit of the time 0."
     lmp_tree.refuse(deck.format(bound, 1e-20), said)
 
 

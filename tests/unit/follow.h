@@ -34,7 +34,7 @@ struct Follower {
   bool repeats = true;    ///< failed steps
   bool rounded = true;    ///< coordinates, whose rounding error is excluded
   RememberedLoads remembered;
-  Growth growing;
+  Growth growing = Growth::START;
   Integrator integrator;
 
   Follower(double eps, bool energy, double h, vector<One> bodies, Loads loads) :
@@ -93,11 +93,10 @@ struct Follower {
       const One &one = bodies[k];
       double *rows = bodies[k].rows.data();
       StepErrors errors;
-      remembered.correct(integrator, one.body, one.reach, met[k], integrator.axes_of(rows).data(),
-                         rows, errors);
-      const StepErrors rounding =
-          remembered.rounding(integrator, one.body, one.reach, met[k], rows);
-      all.include(rounded ? control.counted(errors, rounding) : errors);
+      remembered.correct(control, integrator, one.body, one.reach, met[k],
+                         integrator.axes_of(rows).data(), rows, errors);
+      if (rounded) errors.error *= control.counted(integrator, one.body, one.reach, met[k], rows);
+      all.include(errors);
     }
     take_states();
     return all;
@@ -109,7 +108,7 @@ struct Follower {
     while (true) {
       const vector<One> before = bodies;
       const StepErrors errors = try_step();
-      const double error = control.error(errors);
+      const double error = errors.error;
       if (!repeats || !control.fails(error, h)) {
         t += h;
         ++steps;
