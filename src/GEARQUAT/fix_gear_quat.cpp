@@ -363,14 +363,15 @@ bool FixGearQuat::is_minimized() const
 void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
 {
   if (!respa.outermost(ilevel)) return;
-  if (step.phase == Phase::SET_UP) respa.sum_present();
+  respa.sum();
   begin_step(vflag, respa.forces(), respa.torques());
 }
 
 void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
 {
-  respa.add(ilevel);
-  if (respa.outermost(ilevel)) end_step(respa.forces(), respa.torques());
+  if (!respa.outermost(ilevel)) return;
+  respa.sum();
+  end_step(respa.forces(), respa.torques());
 }
 
 /* ----------------------------------------------------------------------
@@ -426,8 +427,7 @@ int FixGearQuat::modify_param(int narg, char **arg)
 
 double FixGearQuat::memory_usage()
 {
-  return ownership.memory_usage() + sites.memory_usage() + outputs.memory_usage() +
-      respa.memory_usage();
+  return ownership.memory_usage() + sites.memory_usage() + outputs.memory_usage();
 }
 
 /* ----------------------------------------------------------------------

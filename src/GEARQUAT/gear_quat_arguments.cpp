@@ -187,7 +187,7 @@ void Arguments::check_ranges()
     if (row.kind != Keyword::INTEGER) continue;
     const Keyword::Range &range = row.range(scheme.first());
     KeywordValue value;
-    value.integer = row.standard_of(range, !scheme.tuned);
+    value.integer = row.standard_of(range, !scheme.tuned());
     const bool is_stated = given.count(row.name) && !given.at(row.name).is("auto");
     if (is_stated) value = given.at(row.name);
     row.store(*this, value);

@@ -6,7 +6,6 @@
 #include "gear_quat_barostat.h"
 
 #include "gear_quat_known_styles.h"
-#include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -54,7 +53,7 @@ Barostat::Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sit
 void Barostat::set_scheme(const Scheme &scheme)
 {
   if (!moves()) return;
-  changing_step = scheme.remembers;
+  changing_step = scheme.remembers();
   cell.set_scheme(scheme);
   fastest = fastest_oscillation(CellHistory::scheme_of(scheme));
 }
@@ -489,9 +488,8 @@ void Barostat::begin_start(const StartNodes &nodes, double xi)
   if (!moves()) return;
   const double s = nodes.spacing;
   const Upper second = begin_acceleration(xi);
-  nodes.collocation.begin<Upper::SIZE>(box.matrix().m.data(),
-                                       (rate * box.matrix()).scaled(s).m.data(),
-                                       second.scaled(s * s).m.data(), cell_at_nodes);
+  nodes.collocation.begin(box.matrix().m.data(), (rate * box.matrix()).scaled(s).m.data(),
+                          second.scaled(s * s).m.data(), cell_at_nodes);
 }
 
 void Barostat::foretell(const StartNodes &nodes)

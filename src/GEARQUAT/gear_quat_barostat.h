@@ -30,8 +30,8 @@
 #include "gear_quat_arguments.h"
 #include "gear_quat_box.h"
 #include "gear_quat_fields.h"
-#include "gear_quat_limits.h"
 #include "gear_quat_remembered_loads.h"
+#include "gear_quat_stability.h"
 #include "gear_quat_startup.h"
 #include "gear_quat_temperature.h"
 #include "gear_quat_virial.h"
@@ -210,7 +210,7 @@ class Barostat : protected Pointers {
 
   // the start
 
-  Collocation::Nodes<Upper::SIZE, 2> cell_at_nodes = {};
+  Collocation::Nodes cell_at_nodes = {};
 
   double weight_of(int direction) const;
   double kt() const;

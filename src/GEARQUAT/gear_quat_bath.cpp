@@ -6,7 +6,6 @@
 #include "gear_quat_bath.h"
 
 #include "gear_quat_langevin.h"
-#include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 
 #include "comm.h"
@@ -51,7 +50,7 @@ static constexpr auto TRANSLATION = Temperature::TRANSLATION, ROTATION = Tempera
 /// With remembered loads the box is that of a constant order.
 static Scheme scheme_of_bath(Scheme scheme)
 {
-  if (!scheme.remembers) return scheme;
+  if (!scheme.remembers()) return scheme;
   scheme.formulation = Formulation::SECOND;
   scheme.rows = SECOND_PAPER;
   scheme.passes = 2;
@@ -77,7 +76,7 @@ void Bath::set_scheme(const Scheme &scheme)
   of_heat.formulation = Formulation::FIRST;
   of_heat.rows = values_of_heat = isokinetic.acts()
       ? scheme.values()
-      : std::min(CellHistory::scheme_of(scheme).values() - scheme.remembers, FIRST_MOST);
+      : std::min(CellHistory::scheme_of(scheme).values() - scheme.remembers(), FIRST_MOST);
   coefficients_of_heat = CorrectorCoefficients(of_heat).c;
   box.set_scheme(scheme);
 }

@@ -20,7 +20,7 @@ Bodies::Bodies(const Scheme &scheme)
 void Bodies::set_scheme(const Scheme &other)
 {
   scheme = other;
-  row_size = scheme.size() * (scheme.remembers ? 2 : 1);
+  row_size = scheme.size() * (scheme.remembers() ? 2 : 1);
   rows.assign((size_t) nhere() * row_size, 0.0);
 }
 

@@ -213,7 +213,7 @@ const TunedSet *GearQuat::tuned_set(int values)
 /// With a separate c_0, positions have an error of h^(N-1) that is bounded in time.
 int Scheme::order() const
 {
-  if (!tuned) return (velocity_c0 ? values() - 1 : values()) | 1;
+  if (!tuned()) return (velocity_c0 ? values() - 1 : values()) | 1;
   const TunedSet *set = tuned_set(values());
   return set && !set->solves_c0() ? values() - 1 : values();
 }
@@ -230,7 +230,7 @@ CorrectorCoefficients::CorrectorCoefficients(const Scheme &scheme)
   if (scheme.is_verlet()) {
     exact = {0.0L, 1.0L, 1.0L};
     weight = 1.0L / 3.0L;
-  } else if (scheme.tuned) {
+  } else if (scheme.tuned()) {
     const TunedSet *set = scheme.momentum() ? tuned_set(n) : nullptr;
     if (!set)
       throw std::domain_error(std::string("formulation ") + word_of(scheme.formulation) +

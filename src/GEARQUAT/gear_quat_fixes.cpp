@@ -7,7 +7,6 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_known_styles.h"
-#include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"

@@ -13,7 +13,7 @@
 #ifndef LMP_GEAR_QUAT_FIXES_H
 #define LMP_GEAR_QUAT_FIXES_H
 
-#include "gear_quat_limits.h"
+#include "gear_quat_stability.h"
 #include "gear_quat_sites.h"
 
 #include <string>

@@ -19,7 +19,6 @@
 #include "force.h"
 #include "improper.h"
 #include "kspace.h"
-#include "memory.h"
 #include "modify.h"
 #include "pair.h"
 #include "update.h"
@@ -43,7 +42,7 @@ static constexpr double SAME = 1.0e-13;
 
 /* ---------------------------------------------------------------------- */
 
-Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(lmp), tallies(lmp)
+Forces::Forces(LAMMPS *lmp, const std::vector<const Fix *> &owners) : Pointers(lmp)
 {
   look_at_styles();
   if (why.empty()) look_at_fixes(owners);
@@ -94,24 +93,27 @@ void Forces::look_at_time()
   save();
   for (const bool of_fixes : {false, true}) {
     if (!why.empty() || (of_fixes && post_force.empty())) continue;
+    const auto for_numbers = [this](auto act) {
+      for (double **rows : {atom->f, atom->torque})
+        for (int k = 0; rows && k < 3 * atom->nlocal; ++k) act(rows[0][k]);
+    };
     evaluate_at(update->ntimestep, of_fixes);
     std::vector<double> now;
     now.reserve(6 * (size_t) atom->nlocal);
     double largest = 0.0;
-    for (double **rows : {atom->f, atom->torque})
-      for (int k = 0; rows && k < 3 * atom->nlocal; ++k) {
-        now.push_back(rows[0][k]);
-        largest = std::max(largest, std::fabs(rows[0][k]));
-      }
+    for_numbers([&](double one) {
+      now.push_back(one);
+      largest = std::max(largest, std::fabs(one));
+    });
     const double same = SAME * over_ranks(MPI_MAX, largest, world);
     for (const bigint step : {EVERY_TIMES, AT_NO_TIMES}) {
       if (!why.empty()) break;
       evaluate_at(step, of_fixes);
       int differs = 0;
       auto then = now.begin();
-      for (double **rows : {atom->f, atom->torque})
-        for (int k = 0; rows && k < 3 * atom->nlocal; ++k)
-          if (std::fabs(rows[0][k] - *then++) > same) differs = 1;
+      for_numbers([&](double one) {
+        if (std::fabs(one - *then++) > same) differs = 1;
+      });
       if (over_ranks(MPI_MAX, differs, world) && why.empty())
         why = of_fixes ? "an external force depends on time"
                        : fmt::format("forces depend on time (pair style {})", force->pair_style);
@@ -120,35 +122,46 @@ void Forces::look_at_time()
   restore();
 }
 
-/// Forces and torques of the styles, or of the fixes, at another step; reason() reports if one of
-/// them reads an energy or a pressure.
+/// Forces and torques of the styles, or of the fixes, at another step, with energies and virials of
+/// the last step as if they were current; reason() reports if one of them reads these.
 void Forces::evaluate_at(bigint step, bool of_fixes)
 {
   const bigint present = update->ntimestep;
   update->ntimestep = step;
-  tallies.pretend();
-  const auto look_at_tallies = [this](const std::string &reader) {
-    if (why.empty() && tallies.used())
-      why = reader + " depends on energies or pressures, which LAMMPS computes only in steps";
-  };
+  for (auto *tally : steps_of_tallies()) *tally = step;
   if (of_fixes) {
-    clear_owned();
+    const size_t n = 3 * (size_t) atom->nlocal;
+    if (n) std::fill_n(atom->f[0], n, 0.0);
+    if (n && atom->torque_flag) std::fill_n(atom->torque[0], n, 0.0);
     for (auto *fix : post_force) {
       fix->post_force(0);
-      look_at_tallies(name_of(fix));
+      note_reader(name_of(fix));
     }
   } else {
     evaluate_styles(0, 0);
-    look_at_tallies(fmt::format("pair style {}", force->pair_style));
+    note_reader(fmt::format("pair style {}", force->pair_style));
   }
   update->ntimestep = present;
 }
 
-/* ---------------------------------------------------------------------- */
+void Forces::note_reader(const std::string &reader)
+{
+  for (const auto *one : modify->get_compute_list())
+    if (why.empty() && one->timeflag && one->invoked_flag)
+      why = reader + " depends on energies or pressures, which LAMMPS computes only in steps";
+}
+
+/// The steps in which LAMMPS has tallied energies and virials.
+std::array<bigint *, 4> Forces::steps_of_tallies()
+{
+  return {&update->eflag_global, &update->vflag_global, &update->eflag_atom, &update->vflag_atom};
+}
 
 void Forces::save()
 {
-  tallies.save();
+  int tally = 0;
+  for (const auto *step : steps_of_tallies()) tallied[tally++] = *step;
+  modify->clearstep_compute();
   const size_t n = (size_t) atom->nlocal + atom->nghost;
   copies.clear();
   const auto keep = [this, n](double *data, int columns) {
@@ -166,7 +179,15 @@ void Forces::save()
 
 void Forces::restore()
 {
-  tallies.restore();
+  constexpr bigint NEVER = -1;
+  int tally = 0;
+  for (auto *step : steps_of_tallies()) *step = tallied[tally++];
+  for (auto *one : modify->get_compute_list()) {
+    one->invoked_flag = Compute::INVOKED_NONE;
+    for (auto *step : {&one->invoked_scalar, &one->invoked_vector, &one->invoked_array,
+                       &one->invoked_peratom, &one->invoked_local})
+      *step = NEVER;
+  }
   for (const auto &copy : copies) std::copy(copy.values.begin(), copy.values.end(), copy.data);
 }
 
@@ -192,23 +213,6 @@ void Forces::evaluate_styles(int eflag, int vflag)
   comm->forward_comm();
   clear();
   for (auto *fix : pre_force) fix->pre_force(vflag);
-  compute_forces(eflag, vflag);
-  for (auto *fix : pre_force) fix->pre_reverse(eflag, vflag);
-  if (force->newton) comm->reverse_comm();
-}
-
-/// Clears the forces before fixes are evaluated alone.
-void Forces::clear_owned()
-{
-  const size_t n = 3 * (size_t) atom->nlocal;
-  if (n == 0) return;
-  std::fill_n(atom->f[0], n, 0.0);
-  if (atom->torque_flag) std::fill_n(atom->torque[0], n, 0.0);
-}
-
-/// Without flags thermo output of the step does not change.
-void Forces::compute_forces(int eflag, int vflag)
-{
   if (force->pair && force->pair->compute_flag) force->pair->compute(eflag, vflag);
   if (atom->molecular != Atom::ATOMIC) {
     if (force->bond) force->bond->compute(eflag, vflag);
@@ -217,139 +221,31 @@ void Forces::compute_forces(int eflag, int vflag)
     if (force->improper) force->improper->compute(eflag, vflag);
   }
   if (force->kspace && force->kspace->compute_flag) force->kspace->compute(eflag, vflag);
-}
-
-/* ----------------------------------------------------------------------
-   LAMMPS' records of computes
-------------------------------------------------------------------------- */
-
-static constexpr bigint NEVER = -1;
-
-/// The records of a compute with the step of its last evaluation.
-static std::vector<bigint *> steps_of_evaluation(Compute *one)
-{
-  return {&one->invoked_scalar, &one->invoked_vector, &one->invoked_array, &one->invoked_peratom,
-          &one->invoked_local};
-}
-
-static std::vector<bigint *> steps_of_tally(Update *update)
-{
-  return {&update->eflag_global, &update->vflag_global, &update->eflag_atom, &update->vflag_atom};
-}
-
-void Tallies::save()
-{
-  notes.clear();
-  for (auto *one : modify->get_compute_list()) {
-    Note note = {one->invoked_flag, {}, {}};
-    int n = 0;
-    for (const auto *step : steps_of_evaluation(one)) note.invoked[n++] = *step;
-    if (one->timeflag) note.steps.assign(one->tlist, one->tlist + one->ntime);
-    notes.push_back(note);
-  }
-  int n = 0;
-  for (const auto *step : steps_of_tally(update)) tallied[n++] = *step;
-  modify->clearstep_compute();
-}
-
-void Tallies::pretend()
-{
-  for (auto *step : steps_of_tally(update)) *step = update->ntimestep;
-}
-
-bool Tallies::used() const
-{
-  const auto &computes = modify->get_compute_list();
-  return std::any_of(computes.begin(), computes.end(), [](const Compute *one) {
-    return one->timeflag && one->invoked_flag;
-  });
-}
-
-void Tallies::restore()
-{
-  size_t which = 0;
-  for (auto *one : modify->get_compute_list()) {
-    const Note &note = notes[which++];
-    int n = 0;
-    one->invoked_flag = note.flag;
-    for (auto *step : steps_of_evaluation(one)) {
-      if (*step != note.invoked[n]) {
-        *step = NEVER;
-        one->invoked_flag = Compute::INVOKED_NONE;
-      }
-      ++n;
-    }
-    if (!one->timeflag) continue;
-    one->clearstep();
-    for (const bigint step : note.steps) one->addstep(step);
-  }
-  int n = 0;
-  for (auto *step : steps_of_tally(update)) *step = tallied[n++];
+  for (auto *fix : pre_force) fix->pre_reverse(eflag, vflag);
+  if (force->newton) comm->reverse_comm();
 }
 
 /* ----------------------------------------------------------------------
    r-RESPA
 ------------------------------------------------------------------------- */
 
-RespaForces::RespaForces(LAMMPS *lmp) : Pointers(lmp), f(nullptr), torque(nullptr), nmax(0) {}
-
-RespaForces::~RespaForces()
+/// LAMMPS keeps the forces of the inner levels in a fix that packs for each atom 3 numbers per
+/// level: forces, then torques.  Atoms have those of the outermost level.
+void RespaForces::sum()
 {
-  memory->destroy(f);
-  memory->destroy(torque);
-}
-
-bool RespaForces::outermost(int level) const
-{
-  return level == levels() - 1;
-}
-
-int RespaForces::levels() const
-{
-  return (int) steps(lmp).size();
-}
-
-/// Atoms may have been exchanged since the step began.
-void RespaForces::begin()
-{
-  if (atom->nmax > nmax) {
-    nmax = atom->nmax;
-    memory->destroy(f);
-    memory->destroy(torque);
-    memory->create(f, nmax, 3, "gear/quat:f_sum");
-    if (atom->torque_flag) memory->create(torque, nmax, 3, "gear/quat:torque_sum");
-  }
-  std::fill_n(f[0], 3 * (size_t) nmax, 0.0);
-  if (torque) std::fill_n(torque[0], 3 * (size_t) nmax, 0.0);
-}
-
-void RespaForces::add(int level)
-{
-  if (level == 0) begin();
-  for (int i = 0; i < atom->nlocal; ++i) {
-    add3(atom->f[i], f[i]);
-    if (torque) add3(atom->torque[i], torque[i]);
-  }
-}
-
-/// LAMMPS keeps them in a separate fix that packs for each atom 3 numbers per level: forces, then
-/// torques.
-void RespaForces::sum_present()
-{
-  begin();
   Fix *store = modify->get_fix_by_id("RESPA");
-  const int n = levels();
-  std::vector<double> stored((torque ? 6 : 3) * (size_t) n);
-  for (int i = 0; i < atom->nlocal; ++i) {
-    store->pack_exchange(i, stored.data());
-    for (int j = 0; j < 3 * n; ++j) {
-      f[i][j % 3] += stored[j];
-      if (torque) torque[i][j % 3] += stored[3 * n + j];
-    }
+  const int all = 3 * (int) steps(lmp).size(), n = atom->nlocal;
+  std::vector<double> stored(2 * (size_t) all);
+  double **const outer[] = {atom->f, atom->torque_flag ? atom->torque : nullptr};
+  for (int k = 0; k < 2; ++k) {
+    rows[k].clear();
+    if (n == 0 || !outer[k]) continue;
+    numbers[k].assign(outer[k][0], outer[k][0] + 3 * (size_t) n);
+    for (int i = 0; i < n; ++i) rows[k].push_back(&numbers[k][3 * (size_t) i]);
   }
-}
-
-double RespaForces::memory_usage() const
-{
-  return (torque ? 6.0 : 3.0) * nmax * sizeof(double);
+  for (int i = 0; i < n; ++i) {
+    store->pack_exchange(i, stored.data());
+    for (int k = 0; k < 2 && !rows[k].empty(); ++k)
+      for (int j = 0; j < all - 3; ++j) rows[k][i][j % 3] += stored[(size_t) k * all + j];
+  }
 }

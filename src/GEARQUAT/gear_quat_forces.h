@@ -20,6 +20,7 @@
 #include "lmptype.h"
 #include "pointers.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -28,32 +29,6 @@ class Fix;
 }    // namespace LAMMPS_NS
 
 namespace LAMMPS_NS::GearQuat {
-
-/// LAMMPS' records of computes: the last step at which each was evaluated, the steps for which it
-/// was requested, and the step in which energies and virials were tallied.  A fix whose force is a
-/// variable of computes changes these records whenever its force is evaluated, also between steps.
-class Tallies : protected Pointers {
- public:
-  explicit Tallies(LAMMPS *lmp) : Pointers(lmp) {}
-
-  /// Saves the records and marks computes as not evaluated.
-  void save();
-  /// Marks energies and virials of the last step as current.
-  void pretend();
-  /// True if a compute that needs such a tally was evaluated since save().
-  bool used() const;
-  /// Restores the records of save().  Computes evaluated since then will be evaluated again.
-  void restore();
-
- private:
-  struct Note {
-    int flag;
-    bigint invoked[5];
-    std::vector<bigint> steps;
-  };
-  std::vector<Note> notes;
-  bigint tallied[4];
-};
 
 class Forces : protected Pointers {
  public:
@@ -66,7 +41,8 @@ class Forces : protected Pointers {
   /// Saves all data of all atoms, including ghosts, for any atom style: positions, velocities,
   /// forces, and other quantities that pair styles sum up or overwrite, such as rates of energies.
   void save();
-  /// Restores the data of save().
+  /// Restores the data of save().  Computes count as not evaluated: a fix whose force is a variable
+  /// of computes has evaluated them.
   void restore();
   /// Largest displacement of an owned atom since save(), on all ranks.
   double largest_displacement() const;
@@ -83,44 +59,37 @@ class Forces : protected Pointers {
     std::vector<double> values;
   };
   std::vector<Copy> copies;    ///< of the per-atom arrays of the atom style, positions first
-  Tallies tallies;
+  std::array<bigint, 4> tallied;
 
   void look_at_styles();
   void look_at_fixes(const std::vector<const Fix *> &owners);
   void look_at_time();
   void evaluate_at(bigint step, bool of_fixes);
   void clear();
-  void clear_owned();
   void evaluate_styles(int eflag, int vflag);
-  void compute_forces(int eflag, int vflag);
+  std::array<bigint *, 4> steps_of_tallies();
+  void note_reader(const std::string &reader);
 };
 
-/// r-RESPA with one step for all levels: the forces of a step are the sum over the levels.  LAMMPS
-/// has the forces of each level in atom->f when that level ends.
+/// r-RESPA with one step for all levels: the forces of a step are the sum over the levels.
 class RespaForces : protected Pointers {
  public:
-  RespaForces(LAMMPS *lmp);
-  ~RespaForces() override;
+  explicit RespaForces(LAMMPS *lmp) : Pointers(lmp) {}
 
   /// The time steps of all levels, the innermost first; none without r-RESPA.
   static std::vector<double> steps(LAMMPS *lmp);
   /// True for the level that begins and ends a step.
-  bool outermost(int level) const;
-  /// Called before a step: sums the latest forces of all levels, including all fixes.
-  void sum_present();
-  /// The forces, and torques where atoms have some, of one level; level 0 begins a sum.
-  void add(int level);
+  bool outermost(int level) const { return level + 1 == (int) steps(lmp).size(); }
+  /// Sums the latest forces of all levels, including all fixes, where the outermost level begins or
+  /// ends a step.
+  void sum();
 
-  double **forces() const { return f; }
-  double **torques() const { return torque; }    ///< null where atoms have none
-  double memory_usage() const;
+  double **forces() { return rows[0].data(); }
+  double **torques() { return rows[1].data(); }    ///< null where atoms have none
 
  private:
-  double **f, **torque;
-  int nmax;
-
-  int levels() const;
-  void begin();
+  std::vector<double> numbers[2];    ///< forces, and torques where atoms have some
+  std::vector<double *> rows[2];
 };
 
 }    // namespace LAMMPS_NS::GearQuat

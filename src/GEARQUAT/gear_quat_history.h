@@ -50,19 +50,24 @@ inline const char *word_of(Formulation formulation)
   return WORDS[(int) formulation];
 }
 
+/// The coefficients: Gear's; tuned ones, for formulation momentum (gear_quat_coefficients.cpp); of
+/// remembered loads, with two more rows (gear_quat_remembered_loads.h).
+enum class Method { GEAR, TUNED, ADAMS };
+
 /// Settings common to all bodies of a run.
 struct Scheme {
   Formulation formulation = Formulation::SECOND;
-  int rows = 0;          ///< values kept; 0: as many as the paper
-  int passes = 1;        ///< first, second: corrections with the same forces
-  bool tuned = false;    ///< momentum: coefficients of gear_quat_coefficients.cpp, otherwise Gear's
+  int rows = 0;      ///< values kept; 0: as many as the paper
+  int passes = 1;    ///< first, second: corrections with the same forces
+  Method method = Method::GEAR;
   bool velocity_c0 = false;        ///< second: c_0 for velocity-dependent right sides (the paper's)
   bool predicted_omega = false;    ///< first: omega that feeds Eq. 5
   bool predicted_momentum = false;    ///< first: momentum that feeds Eq. 13 (the paper's)
   bool project = true;                ///< first, second: onto |q| = 1 after every step
   bool compensate = false;            ///< compensated sums of the rows that are integrated
-  bool remembers = false;             ///< two more rows, see gear_quat_remembered_loads.h
 
+  bool tuned() const { return method == Method::TUNED; }
+  bool remembers() const { return method == Method::ADAMS; }
   bool first() const { return formulation == Formulation::FIRST; }
   bool momentum() const { return formulation == Formulation::MOMENTUM; }
   int values() const { return rows ? rows : first() ? FIRST_PAPER : SECOND_PAPER; }
@@ -73,15 +78,15 @@ struct Scheme {
   int coupled_passes() const { return !momentum() ? passes : values() < 9 ? 3 : 2; }
   int carries() const { return compensate ? (first() ? 1 : 2) : 0; }
   /// Doubles of a history: rows, carries, trial rows.
-  int size() const { return (values() + carries() + (remembers ? 2 : 0)) * width(); }
+  int size() const { return (values() + carries() + (remembers() ? 2 : 0)) * width(); }
   int trial_row() const { return (values() + carries()) * width(); }
   /// One remembered load has as many rows, and is another method.
-  bool is_verlet() const { return !first() && !remembers && values() == VERLET; }
+  bool is_verlet() const { return !first() && !remembers() && values() == VERLET; }
   /// Order of the error of positions in time, if forces vary slowly along the trajectory (otherwise
   /// N for even N, and N - 1 with velocity_c0).  See gear_quat_coefficients.cpp.
   int order() const;
   /// The number of values for which a start has the order required by this scheme.
-  int start_values() const { return tuned ? std::min(values(), order()) : values(); }
+  int start_values() const { return tuned() ? std::min(values(), order()) : values(); }
 
   // columns of a row
 
@@ -426,39 +431,6 @@ class Kinematics {
       omega_of(body, frame.axes, rates + Scheme::ANGULAR_MOMENTUM, omega_body);
     copy(omega_body, 3, state.omega_body);
     to_space(frame.axes, omega_body, frame.omega_space);
-  }
-};
-
-/// No step can be right if a body turns by half a turn in it (the poses alone do not determine the
-/// direction of the turn), if it crosses the whole simulation box, if its quaternion is so far from
-/// unit length that unprojected sites are wrong by a factor of a hundred, or if its motion is not
-/// finite.  All these limits are far outside of the stable range, so only unstable runs end here:
-/// the quaternion of a free rotation is a harmonic motion with omega/2, half a turn is omega/2 h =
-/// 1.57, and all methods here are unstable beyond 1.42.
-struct MotionLimits {
-  static constexpr double TURN = 3.14159265358979323846;    ///< radians in a step
-  static constexpr double NORM2 = 100.0;    ///< |q|^2 is less than this, and more than its inverse
-
-  double speed2 = 0.0, rate2 = 0.0;
-
-  MotionLimits() = default;
-  /// h: the time step, not zero.  length: of the scene, infinite for none.
-  MotionLimits(double h, double length) :
-      speed2((length / h) * (length / h)), rate2((TURN / h) * (TURN / h))
-  {
-  }
-
-  /// False for velocities that are beyond the limits or not finite.
-  bool keep_velocities(const BodyState &s) const
-  {
-    return dot3(s.velocity, s.velocity) < speed2 && dot3(s.omega_body, s.omega_body) < rate2;
-  }
-
-  /// Also tests |q|.  Of a corrected state: a predicted q does not have unit length.
-  bool keep(const BodyState &s) const
-  {
-    const double norm2 = dot4(s.q, s.q);
-    return keep_velocities(s) && norm2 < NORM2 && norm2 > 1.0 / NORM2;
   }
 };
 

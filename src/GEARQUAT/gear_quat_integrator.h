@@ -60,7 +60,7 @@ class Integrator : public Kinematics {
   Integrator(const Scheme &scheme, double h, const CorrectorCoefficients &coefficients) :
       Kinematics(scheme, h), n(scheme.values()),
       turning(scheme.is_verlet() ? 1 : n - 1, std::max(scheme.order(), LEAST_ORDER),
-              std::pow(10.0, scheme.remembers ? -15 : -std::min(15, n + 8))),
+              std::pow(10.0, scheme.remembers() ? -15 : -std::min(15, n + 8))),
       corrector(coefficients)
   {
   }
@@ -94,7 +94,7 @@ class Integrator : public Kinematics {
     with_history([&](auto history) {
       history.rescale(rows, n, ratio);
     });
-    if (!scheme.remembers) return;
+    if (!scheme.remembers()) return;
     double factor = std::pow(ratio, n), *above = rows + scheme.trial_row();
     for (int i = 0; i < 2 * scheme.width(); ++i) {
       if (i == scheme.width()) factor *= ratio;
@@ -114,6 +114,10 @@ class Integrator : public Kinematics {
       return correct_momenta(body, load, axes, total, rows);
     }
     Pending pending = begin(load, axes, rows);
+    if (scheme.first())    // for constant forces once is sufficient
+      with_history([&](auto history) {
+        correct_center(history, body, load, Undamped(), rows, pending.total.x);
+      });
     for (int k = scheme.passes; k > 0; --k) correct_pass(body, load, Undamped(), rows, pending);
     return finish(body, load, rows, pending);
   }
@@ -133,7 +137,6 @@ class Integrator : public Kinematics {
   struct Pending {
     double x[3], q[4], torque_body[3];
     Residual total;
-    bool begun;    ///< a pass has been made
   };
 
   Pending begin(const Load &load, const double *axes, const double *rows) const
@@ -143,7 +146,6 @@ class Integrator : public Kinematics {
     copy(rows + scheme.quaternion(), 4, pending.q);
     to_body(axes, load.torque_space, pending.torque_body);
     pending.total = Residual();
-    pending.begun = false;
     return pending;
   }
 
@@ -155,7 +157,6 @@ class Integrator : public Kinematics {
     with_history([&](auto history) {
       pass(history, body, load, friction, rows, pending);
     });
-    pending.begun = true;
   }
 
   /// The velocities after the passes so far.
@@ -193,12 +194,15 @@ class Integrator : public Kinematics {
   /// A rotation about an axis without inertia does not change: it has no momentum.
   void scale_momenta(const RigidBody &body, const Multipliers &factor, double *rows) const
   {
-    double change[3];
-    for (int i = 0; i < 3; ++i) change[i] = (factor.translation - 1.0) * rows[Scheme::MOMENTUM + i];
-    add_first(rows, Scheme::MOMENTUM, change);
-    for (int i = 0; i < 3; ++i)
-      change[i] = body.inertia[i] > 0.0 ? (factor.rotation - 1.0) * rows[Scheme::OMEGA + i] : 0.0;
-    add_first(rows, Scheme::OMEGA, change);
+    double p[3], omega[3];
+    for (int i = 0; i < 3; ++i) {
+      p[i] = (factor.translation - 1.0) * rows[Scheme::MOMENTUM + i];
+      omega[i] = body.inertia[i] > 0.0 ? (factor.rotation - 1.0) * rows[Scheme::OMEGA + i] : 0.0;
+    }
+    with_history([&](auto history) {
+      history.template add<3>(rows, n, 0, Scheme::MOMENTUM, p);
+      history.template add<3>(rows, n, 0, Scheme::OMEGA, omega);
+    });
   }
 
   /// Formulation momentum: moves and turns a body, and changes its momenta.  place: as in row 0, with
@@ -208,12 +212,11 @@ class Integrator : public Kinematics {
     double turn[3], change[4];
     turn_of(body, axes_of(rows).data(), place + Scheme::ANGULAR_MOMENTUM, turn);
     small_turn(rows + Scheme::SECOND_QUATERNION, turn, change);
-    const auto add = [&](auto history) {
+    with_history([&](auto history) {
       history.template add<3>(rows, n, 0, Scheme::POSITION, place);
       history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
       history.template add<6>(rows, n, 1, Scheme::POSITION, rate);
-    };
-    scheme.compensate ? add(Momenta<2>()) : add(Momenta<0>());
+    });
   }
 
   /// I^-1 A L, along the principal axes.
@@ -281,7 +284,7 @@ class Integrator : public Kinematics {
       first[body] = half[body];
     }
     turning.changes(count, bodies, first, Scheme::SECOND_WIDTH, turned);
-    for (int body = 0; body < count && scheme.remembers; ++body)
+    for (int body = 0; body < count && scheme.remembers(); ++body)
       turning.change_in_parts(*bodies[body], first[body], Scheme::SECOND_WIDTH, turned[body]);
   }
 
@@ -289,15 +292,11 @@ class Integrator : public Kinematics {
   template <class Act> void with_history(Act act) const
   {
     if (scheme.first())
-      with_first(act);
+      scheme.compensate ? act(First<1>()) : act(First<0>());
     else if (scheme.momentum())
       scheme.compensate ? act(Momenta<2>()) : act(Momenta<0>());
     else
       scheme.compensate ? act(Second<2>()) : act(Second<0>());
-  }
-  template <class Act> void with_first(Act act) const
-  {
-    scheme.compensate ? act(First<1>()) : act(First<0>());
   }
 
   /// Of the series of a turn.  Librations have products of low order, even if they turn slowly.
@@ -307,24 +306,17 @@ class Integrator : public Kinematics {
   Turn turning;
   CorrectorCoefficients corrector;
 
-  /// The residual of a column is target - row, for the row of the order of the equation.
+  /// The residual: of the first derivative.
   template <int COUNT, class History>
-  void feed_back(History history, const CorrectorCoefficients::Array &coefficients, double *rows,
-                 const double *row, int component, double *target, double *total = nullptr) const
+  void feed_back(History history, double *rows, int component, const double *residual,
+                 double *total = nullptr) const
   {
-    for (int i = 0; i < COUNT; ++i) target[i] -= row[component + i];
-    feed_back<COUNT>(history, coefficients, rows, component, target, total);
-  }
-  template <int COUNT, class History>
-  void feed_back(History history, const CorrectorCoefficients::Array &coefficients, double *rows,
-                 int component, const double *target, double *total = nullptr) const
-  {
-    history.template correct<COUNT>(rows, n, coefficients.data(), component, target);
+    history.template correct<COUNT>(rows, n, corrector.c.data(), component, residual);
     if (total)
-      for (int i = 0; i < COUNT; ++i) total[i] += target[i];
+      for (int i = 0; i < COUNT; ++i) total[i] += residual[i];
   }
 
-  /// Momenta (Eq. 14) and positions (Eq. 13): for constant forces one pass is sufficient.
+  /// Momenta (Eq. 14) and positions (Eq. 13).
   template <int CARRIES, class Damper>
   void correct_center(First<CARRIES> history, const RigidBody &body, const Load &load,
                       const Damper &damper, double *rows, double *residual) const
@@ -336,10 +328,10 @@ class Integrator : public Kinematics {
       target[i] =
           h * damper.force(i, load.force[i], before, body.mass) - rates[Scheme::MOMENTUM + i];
     if (damper.implicit) damper.solve(h * corrector.c[0], target);
-    feed_back<3>(history, corrector.c, rows, Scheme::MOMENTUM, target);
+    feed_back<3>(history, rows, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
-    for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass;
-    feed_back<3>(history, corrector.c, rows, rates, Scheme::POSITION, target, residual);
+    for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass - rates[Scheme::POSITION + i];
+    feed_back<3>(history, rows, Scheme::POSITION, target, residual);
   }
 
   /// Angular velocities (Eqs. 7, 15) and quaternions (Eqs. 5, 16).
@@ -358,17 +350,17 @@ class Integrator : public Kinematics {
     if (damper.implicit)
       for (int i = 0; i < 3; ++i)
         if (body.inertia[i] > 0.0) target[i] *= damper.implicit_torque(h * corrector.c[0]);
-    feed_back<3>(history, corrector.c, rows, Scheme::OMEGA, target);
+    feed_back<3>(history, rows, Scheme::OMEGA, target);
     quaternion_rate(rows + quat, scheme.predicted_omega ? before : omega_body, target);
-    for (int i = 0; i < 4; ++i) target[i] *= h;
-    feed_back<4>(history, corrector.c, rows, rates, quat, target, residual);
+    for (int i = 0; i < 4; ++i) target[i] = h * target[i] - rates[quat + i];
+    feed_back<4>(history, rows, quat, target, residual);
   }
 
   template <int CARRIES, class Damper>
   void pass(First<CARRIES> history, const RigidBody &body, const Load &load, const Damper &friction,
             double *rows, Pending &pending) const
   {
-    if (!std::is_same_v<Damper, Undamped> || !pending.begun)
+    if (!std::is_same_v<Damper, Undamped>)
       correct_center(history, body, load, friction, rows, pending.total.x);
     correct_rotation(history, body, pending.torque_body, friction, rows, pending.total.q);
   }
@@ -377,13 +369,6 @@ class Integrator : public Kinematics {
   void finish_passes(First<CARRIES> history, double *rows, const Pending &) const
   {
     if (scheme.project) project_row(history, rows);
-  }
-
-  void add_first(double *rows, int component, const double *change) const
-  {
-    with_first([&](auto history) {
-      history.template add<3>(rows, n, 0, component, change);
-    });
   }
 
   Correction conclude(const Load &load, const double *rows, const Pending &pending) const
@@ -451,22 +436,19 @@ class Integrator : public Kinematics {
   Correction correct_momenta(const RigidBody &body, const Load &load, const double *axes,
                              const Residual &total, double *rows) const
   {
-    return scheme.compensate ? correct_momenta(Momenta<2>(), body, load, axes, total, rows)
-                             : correct_momenta(Momenta<0>(), body, load, axes, total, rows);
-  }
-  template <int CARRIES>
-  Correction correct_momenta(Momenta<CARRIES> history, const RigidBody &body, const Load &load,
-                             const double *axes, const Residual &total, double *rows) const
-  {
-    double angle[3], change[4], torque_body[3];
-    const double error2 = small_rotation(body, axes, rows, total.q, angle);
-    history.template correct<3>(rows, n, corrector.c.data(), Scheme::POSITION, total.x);
-    history.template correct<3, 1>(rows, n, corrector.c.data(), Scheme::ANGULAR_MOMENTUM, total.q);
-    small_turn(rows + Scheme::SECOND_QUATERNION, angle, change);
-    history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
-    to_body(axes, load.torque_space, torque_body);
-    return {corrector.c[0] * dot3(load.force, total.x) + dot3(torque_body, angle),
-            corrector.weight2 * dot3(total.x, total.x), 0.25 * corrector.weight2 * error2};
+    const auto correct = [&](auto history) -> Correction {
+      double angle[3], change[4], torque_body[3];
+      const double *c = corrector.c.data();
+      const double error2 = small_rotation(body, axes, rows, total.q, angle);
+      history.template correct<3>(rows, n, c, Scheme::POSITION, total.x);
+      history.template correct<3, 1>(rows, n, c, Scheme::ANGULAR_MOMENTUM, total.q);
+      small_turn(rows + Scheme::SECOND_QUATERNION, angle, change);
+      history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
+      to_body(axes, load.torque_space, torque_body);
+      return {c[0] * dot3(load.force, total.x) + dot3(torque_body, angle),
+              corrector.weight2 * dot3(total.x, total.x), 0.25 * corrector.weight2 * error2};
+    };
+    return scheme.compensate ? correct(Momenta<2>()) : correct(Momenta<0>());
   }
 
   template <int CARRIES, class Damper>

@@ -43,7 +43,7 @@ const KeywordTable &GearQuat::keyword_table()
      "how many values a history keeps of each function",
      {{SECOND_FEWEST, SECOND_MOST, 9, 8}, {FIRST_FEWEST, FIRST_MOST, 8, 6}}, {}, 0, true},
     {"corrector", INTEGRATION, K::WORD, {"tuned", "gear"},
-     [](A &a, const V &v) { a.scheme.tuned = v.is("tuned"); },
+     [](A &a, const V &v) { a.scheme.method = v.is("tuned") ? Method::TUNED : Method::GEAR; },
      "which coefficients correct a history", {},
      {{"formulation", "second", "gear"}, {"formulation", "first", "gear"}}},
     {"passes", INTEGRATION, K::INTEGER, {},

@@ -72,7 +72,7 @@ class RememberedLoads {
     scheme.formulation = Formulation::MOMENTUM;
     scheme.rows = loads + 2;
     scheme.compensate = compensate;
-    scheme.remembers = true;
+    scheme.method = Method::ADAMS;
     return scheme;
   }
 

@@ -39,12 +39,12 @@ void GearQuat::add_citations(LAMMPS *lmp, const Arguments &args)
   const auto cite = [lmp](bool used, const std::string &what, const std::string &paper) {
     if (used) lmp->citeme->add("fix gear/quat" + what + "\n\n@" + paper + "\n}\n\n");
   };
-  cite(args.scheme.remembers, " tolerance: method of Adams with variable step and order",
+  cite(args.scheme.remembers(), " tolerance: method of Adams with variable step and order",
        "Book{Shampine1975,\n author = {L. F. Shampine and M. K. Gordon},\n"
        " title = {Computer Solution of Ordinary Differential Equations: The Initial Value "
        "Problem},\n"
        " publisher = {Freeman},\n year = 1975");
-  cite(!args.scheme.remembers, ": predictor-corrector method",
+  cite(!args.scheme.remembers(), ": predictor-corrector method",
        "Book{Gear1971,\n author = {C. William Gear},\n"
        " title = {Numerical Initial Value Problems in Ordinary Differential Equations},\n"
        " publisher = {Prentice-Hall},\n year = 1971");
@@ -150,7 +150,7 @@ int Report::top_of(const RigidBody &rigid) const
 std::string Report::settings() const
 {
   const Scheme &scheme = args.scheme;
-  if (scheme.remembers)
+  if (scheme.remembers())
     return fmt::format("  formulation {}, at most {} remembered loads\n",
                        word_of(scheme.formulation), MOST_LOADS);
   const std::string values = args.automatic_values ? "values auto"
@@ -159,7 +159,7 @@ std::string Report::settings() const
       ? ""
       : fmt::format(" {} pass{},", scheme.passes, scheme.passes == 1 ? "" : "es");
   return fmt::format("  formulation {}, {},{} corrector {}\n", word_of(scheme.formulation), values,
-                     passes, scheme.tuned ? "tuned" : "gear");
+                     passes, scheme.tuned() ? "tuned" : "gear");
 }
 
 /// The title and a row for each effect.  Collective.

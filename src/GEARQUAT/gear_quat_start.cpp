@@ -21,35 +21,42 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
-Start::Start(LAMMPS *lmp, const std::vector<Step::Starter> &fixes, double h) :
-    Pointers(lmp), h(h), collocation(SECOND_FEWEST)
+Start::Start(LAMMPS *lmp, const std::vector<Step *> &fixes, double h) :
+    Pointers(lmp), starters([&] {
+      std::vector<Starter> all;
+      for (Step *one : fixes) {
+        one->bath.box.refer_to_box(h);
+        all.push_back({one, one->bodies.snapshot(), {}});
+      }
+      return all;
+    }()),
+    forces(lmp, owners()), collocation(most_values()), nodes{collocation, 0.0, h}
 {
-  for (const auto &one : fixes) {
-    if (one.needed) one.step->bath.box.refer_to_box(h);
-    starters.push_back({*one.step, one.needed, one.step->bodies.snapshot(), {}});
-  }
+}
+
+std::vector<const Fix *> Start::owners() const
+{
+  std::vector<const Fix *> fixes;
+  for (const auto &one : starters) fixes.push_back(one.step->fix);
+  return fixes;
 }
 
 int Start::most_values() const
 {
   int most = 0;
-  for (const auto &one : starters) most = std::max(most, one.step.scheme().start_values());
+  for (const auto &one : starters) most = std::max(most, one.step->scheme().start_values());
   return most;
 }
 
 void Start::run()
 {
-  std::vector<const Fix *> owners;
-  for (const auto &one : starters) owners.push_back(one.step.fix);
-  collocation = Collocation(most_values());
-  Forces forces(lmp, owners);
   std::string why = forces.reason();
   bool found = false;
   if (why.empty()) {
-    const StartFound start = search(forces);
+    const StartFound start = search();
     found = start.verdict != StartPlan::Verdict::SHORTER_SPACING;
     const bool any = std::any_of(starters.begin(), starters.end(), [](const auto &one) {
-      return one.step.bodies.number() > 0;
+      return one.step->bodies.number() > 0;
     });
     if (found && comm->me == 0 && any)
       utils::logmesg(lmp, "Fix gear/quat {}: start of order {} from {} force evaluations{}\n",
@@ -57,21 +64,18 @@ void Start::run()
     why = reason;
   }
   for (auto &one : starters) {
-    if (one.needed && !found) {
-      one.step.seed_local(3);
-      if (comm->me == 0)
-        utils::logmesg(lmp,
-                       "Fix gear/quat {}: start with known forces only (order 2), because {}\n",
-                       one.step.fix->id, why);
-    }
-    if (one.needed || found) one.step.note_start();
+    if (!found) one.step->seed_local(3);
+    if (!found && comm->me == 0)
+      utils::logmesg(lmp, "Fix gear/quat {}: start with known forces only (order 2), because {}\n",
+                     one.step->fix->id, why);
+    one.step->note_start();
   }
 }
 
 std::string Start::names() const
 {
   std::vector<std::string> ids;
-  for (const auto &one : starters) ids.emplace_back(one.step.fix->id);
+  for (const auto *fix : owners()) ids.emplace_back(fix->id);
   return utils::join_words(ids, " and ");
 }
 
@@ -80,7 +84,7 @@ bool Start::lowers_order(const StartFound &start) const
 {
   return start.verdict == StartPlan::Verdict::JUMPS &&
       std::any_of(starters.begin(), starters.end(), [&start](const auto &one) {
-           return start.order() < one.step.scheme().order();
+           return start.order() < one.step->scheme().order();
          });
 }
 
@@ -89,7 +93,7 @@ std::string Start::orders(const StartFound &start) const
 {
   std::string orders;
   for (const auto &one : starters) {
-    const int full = one.step.scheme().order();
+    const int full = one.step->scheme().order();
     const std::string order =
         std::to_string(lowers_order(start) ? std::min(full, start.order()) : full);
     if (orders.empty() || orders != order) orders += (orders.empty() ? "" : " and ") + order;
@@ -97,143 +101,134 @@ std::string Start::orders(const StartFound &start) const
   return orders;
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   the host of find_start()
+------------------------------------------------------------------------- */
 
 /// The number of pairs of nodes needed for a choice of the number of values.
 static constexpr int PAIRS_THAT_TELL = 2;
 
-/// The host of find_start().
-struct Start::Search {
-  Start &our;
-  Forces &forces;
-  const double skin;
-  double spacing = 0.0;
+void Start::put_back()
+{
+  for (auto &one : starters) {
+    one.step->bodies.put_back_states(one.before);
+    one.step->bodies.put_back_loads(one.before);
+    one.step->bath.box.leave_nodes();
+  }
+}
 
-  Search(Start &our, Forces &forces) : our(our), forces(forces), skin(our.neighbor->skin) {}
+void Start::begin(double spacing)
+{
+  nodes.spacing = spacing;
+  reason = "forces vary too much within a few steps";
+  put_back();
+  for (auto &one : starters) {
+    const Bodies &bodies = one.step->bodies;
+    one.step->bath.measure();
+    one.step->bath.begin_start(nodes);
+    one.work.resize(bodies.nmoved());
+    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+      collocation.begin(bodies.rigid_of(ibody),
+                        local_series(bodies.rigid_of(ibody), one.step->scaled(ibody),
+                                     one.step->acting(ibody), spacing),
+                        one.work[ibody]);
+  }
+}
 
-  StartNodes nodes() const { return {our.collocation, spacing, our.h}; }
+void Start::foretell()
+{
+  for (auto &one : starters) {
+    for (auto &work : one.work) collocation.foretell(work);
+    one.step->bath.foretell(nodes);
+  }
+}
 
-  void put_back()
-  {
-    for (auto &one : our.starters) {
-      one.step.bodies.put_back_states(one.before);
-      one.step.bodies.put_back_loads(one.before);
-      one.step.bath.box.leave_nodes();
+bool Start::visit(int pair, double &change)
+{
+  double here = 0.0;
+  for (const int node : {-pair, pair})
+    if (!visit_node(node, here)) {
+      reason = fmt::format("sites would leave the neighbor skin, {}", neighbor->skin);
+      return false;
+    }
+  for (auto &one : starters) {
+    for (auto &work : one.work) collocation.settle(pair, work);
+    one.step->bath.settle(nodes, pair);
+  }
+  change = over_ranks(MPI_MAX, here, world);
+  return true;
+}
+
+/// The result of choose().
+int Start::values_that_do(int values) const
+{
+  int most = 0;
+  for (const auto &one : starters) {
+    if (!one.step->args.automatic_values) return values;
+    const Choice choice = one.step->choose(fast_edge(one, PAIRS_THAT_TELL));
+    most = std::max(most, choice.scheme.start_values());
+  }
+  return std::min(values, most);
+}
+
+/// Evaluates forces at one node; change: increased to the largest change.  False, without an
+/// evaluation, if a site would leave the skin.
+bool Start::visit_node(int node, double &change)
+{
+  for (auto &one : starters) {
+    Bodies &bodies = one.step->bodies;
+    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
+      bodies.change_state(ibody) = collocation.state_at(node, one.work[ibody], nodes.spacing);
+    one.step->bath.box.enter_node(nodes, node);
+    one.step->ownership.spread_states();
+    one.step->sites.place(true);
+  }
+  if (forces.largest_displacement() > 0.5 * neighbor->skin) return false;
+  int vflag = 0;
+  for (auto &one : starters) vflag |= one.step->bath.box.vflag();
+  forces.evaluate(0, vflag);
+  ++evaluations;
+  for (auto &one : starters) one.step->sites.gather_loads(atom->f, atom->torque);
+  for (auto &one : starters) {
+    const Bodies &bodies = one.step->bodies;
+    one.step->bath.visit_node(nodes, node);
+    for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+      const Body &body = bodies.body_at(ibody);
+      const double length = body.extent > 0.0 ? body.extent : neighbor->skin;
+      change = std::max(change,
+                        collocation.set_load(node, body.rigid, bodies.state_of(ibody),
+                                             one.step->acting(ibody), nodes.spacing, length,
+                                             one.work[ibody]));
     }
   }
+  return true;
+}
 
-  /// The length scale for the motion of a body.
-  double length(const Body &body) const { return body.extent > 0.0 ? body.extent : skin; }
-
-  void begin(double of)
-  {
-    spacing = of;
-    our.reason = "forces vary too much within a few steps";
-    put_back();
-    for (auto &one : our.starters) {
-      const Bodies &bodies = one.step.bodies;
-      one.step.bath.measure();
-      one.step.bath.begin_start(nodes());
-      one.work.resize(bodies.nmoved());
-      for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-        our.collocation.begin(bodies.rigid_of(ibody),
-                              local_series(bodies.rigid_of(ibody), one.step.scaled(ibody),
-                                           one.step.acting(ibody), spacing),
-                              one.work[ibody]);
-    }
-  }
-
-  void foretell()
-  {
-    for (auto &one : our.starters) {
-      for (auto &work : one.work) our.collocation.foretell(work);
-      one.step.bath.foretell(nodes());
-    }
-  }
-
-  bool visit(int pair, double &change)
-  {
-    double here = 0.0;
-    for (const int node : {-pair, pair})
-      if (!visit_node(node, here)) {
-        our.reason = fmt::format("sites would leave the neighbor skin, {}", skin);
-        return false;
-      }
-    for (auto &one : our.starters) {
-      for (auto &work : one.work) our.collocation.settle(pair, work);
-      one.step.bath.settle(nodes(), pair);
-    }
-    change = over_ranks(MPI_MAX, here, our.world);
-    return true;
-  }
-
-  /// The result of choose().
-  int values_that_do(int values) const
-  {
-    int most = 0;
-    for (const auto &one : our.starters) {
-      if (!one.step.args.automatic_values) return values;
-      const MotionSums here = our.sums_of(one, PAIRS_THAT_TELL, spacing);
-      most = std::max(most, one.step.foresee_scheme(here).start_values());
-    }
-    return std::min(values, most);
-  }
-
-  /// Evaluates forces at one node; change: increased to the largest change.  False, without an
-  /// evaluation, if a site would leave the skin.
-  bool visit_node(int node, double &change)
-  {
-    for (auto &one : our.starters) {
-      Bodies &bodies = one.step.bodies;
-      for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-        bodies.change_state(ibody) = our.collocation.state_at(node, one.work[ibody], spacing);
-      one.step.bath.box.enter_node(nodes(), node);
-      one.step.ownership.spread_states();
-      one.step.sites.place(true);
-    }
-    if (forces.largest_displacement() > 0.5 * skin) return false;
-    int vflag = 0;
-    for (auto &one : our.starters) vflag |= one.step.bath.box.vflag();
-    forces.evaluate(0, vflag);
-    ++our.evaluations;
-    for (auto &one : our.starters) one.step.sites.gather_loads(our.atom->f, our.atom->torque);
-    for (auto &one : our.starters) one.step.bath.visit_node(nodes(), node);
-    for (auto &one : our.starters)
-      for (int ibody = 0; ibody < one.step.bodies.nmoved(); ++ibody) {
-        const Body &body = one.step.bodies.body_at(ibody);
-        const BodyState &state = one.step.bodies.state_of(ibody);
-        change = std::max(change,
-                          our.collocation.set_load(node, body.rigid, state, one.step.acting(ibody),
-                                                   spacing, length(body), one.work[ibody]));
-      }
-    return true;
-  }
-};
+/* ---------------------------------------------------------------------- */
 
 /// After the call atoms, states and loads are as before.
-StartFound Start::search(Forces &forces)
+StartFound Start::search()
 {
   forces.save();
-  Search all(*this, forces);
   const bool coupled = std::any_of(starters.begin(), starters.end(), [](const Starter &one) {
-    return one.step.bath.acts();
+    return one.step->bath.acts();
   });
   const StartFound start =
-      find_start(most_values(), first_spacing(), all, coupled ? StartPlan::COUPLED : 0.0);
+      find_start(most_values(), first_spacing(), *this, coupled ? StartPlan::COUPLED : 0.0);
   if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
     reason.clear();
     for (auto &one : starters)
-      one.step.choose_scheme(sums_of(one, std::min(start.pairs, PAIRS_THAT_TELL), start.spacing));
+      one.step->choose_scheme(fast_edge(one, std::min(start.pairs, PAIRS_THAT_TELL)));
     if (lowers_order(start))
       reason = fmt::format(", because forces change suddenly, by {:.1g} of the motion in a step",
                            start.change);
-    seed_all(start);
+    seed_all(start.pairs);
   }
-  all.put_back();
+  put_back();
   forces.restore();
   for (auto &one : starters) {
-    one.step.ownership.spread_states();
-    one.step.sites.place_extended();
+    one.step->ownership.spread_states();
+    one.step->sites.place_extended();
   }
   return start;
 }
@@ -243,39 +238,37 @@ StartFound Start::search(Forces &forces)
 double Start::first_spacing() const
 {
   constexpr double LARGEST_TURN = 1.0;
-  const double span = collocation.pairs() * std::fabs(h), reach = 0.25 * neighbor->skin;
+  const double span = collocation.pairs() * std::fabs(nodes.h), reach = 0.25 * neighbor->skin;
   double longest = 1.0;    // in units of these limits
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (std::any_of(starters.begin(), starters.end(), [i](const Starter &one) {
-          return one.step.ownership.in_body(i);
-        }))
-      longest = std::max(longest, span * length(atom->v[i]) / reach);
-  for (const auto &one : starters)
-    for (int ibody = 0; ibody < one.step.bodies.nowned(); ++ibody)
+  for (const auto &one : starters) {
+    for (int i = 0; i < atom->nlocal; ++i)
+      if (one.step->ownership.in_body(i))
+        longest = std::max(longest, span * length(atom->v[i]) / reach);
+    for (int ibody = 0; ibody < one.step->bodies.nowned(); ++ibody)
       longest = std::max(longest,
-                         span * length(one.step.bodies.state_of(ibody).omega_body) / LARGEST_TURN);
-  return h / over_ranks(MPI_MAX, longest, world);
+                         span * length(one.step->bodies.state_of(ibody).omega_body) / LARGEST_TURN);
+  }
+  return nodes.h / over_ranks(MPI_MAX, longest, world);
 }
 
-/// Sums from the derivatives of this number of pairs, with the states of the start.
-MotionSums Start::sums_of(const Starter &one, int pairs, double spacing) const
+/// Radians of vibrations in a step, from the derivatives of this number of pairs.
+double Start::fast_edge(const Starter &one, int pairs) const
 {
   MotionSums here;
-  for (int ibody = 0; ibody < one.step.bodies.nowned(); ++ibody)
-    here.add(one.step.bodies.rigid_of(ibody), one.before.states[ibody],
-             collocation.series(one.work[ibody], pairs), spacing);
-  return here;
+  for (int ibody = 0; ibody < one.step->bodies.nowned(); ++ibody)
+    here.add(one.step->bodies.rigid_of(ibody), one.before.states[ibody],
+             collocation.series(one.work[ibody], pairs), nodes.spacing);
+  return one.step->fast_edge(here);
 }
 
 /// Histories of all bodies from the polynomials.
-void Start::seed_all(const StartFound &start)
+void Start::seed_all(int pairs)
 {
   for (auto &one : starters) {
-    Bodies &bodies = one.step.bodies;
+    Bodies &bodies = one.step->bodies;
     for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-      seed(one.step.scheme(), bodies.rigid_of(ibody),
-           collocation.series(one.work[ibody], start.pairs), start.spacing, h,
-           bodies.history(ibody));
-    one.step.bath.seed({collocation, start.spacing, h}, start.pairs, one.step.scheme().values());
+      seed(one.step->scheme(), bodies.rigid_of(ibody), collocation.series(one.work[ibody], pairs),
+           nodes.spacing, nodes.h, bodies.history(ibody));
+    one.step->bath.seed(nodes, pairs, one.step->scheme().values());
   }
 }

@@ -10,7 +10,6 @@
 #define LMP_GEAR_QUAT_START_H
 
 #include "gear_quat_bodies.h"
-#include "gear_quat_choice.h"
 #include "gear_quat_forces.h"
 #include "gear_quat_startup.h"
 #include "gear_quat_step.h"
@@ -23,38 +22,45 @@ namespace LAMMPS_NS::GearQuat {
 class Start : protected Pointers {
  public:
   /// Of all fixes that start together, with one set of nodes.  h: the step of the histories.
-  /// Histories that can continue are kept if not all rows can be found.
-  Start(LAMMPS *lmp, const std::vector<Step::Starter> &fixes, double h);
+  Start(LAMMPS *lmp, const std::vector<Step *> &fixes, double h);
 
   /// Computes derivatives consistent with the trajectory; if forces cannot be followed, the
   /// derivatives from the present loads, with a message on rank 0.  After the call atoms are as
   /// before, and fixes with new histories are told.  Collective.
   void run();
 
+  // the host of find_start()
+
+  void begin(double spacing);
+  void foretell();
+  bool visit(int pair, double &change);
+  int values_that_do(int values) const;
+
  private:
   /// The bodies of one fix, with the states and loads of the start.
   struct Starter {
-    Step &step;
-    bool needed;
+    Step *step;
     Bodies::Snapshot before;
     std::vector<Collocation::Workspace> work;
   };
   std::vector<Starter> starters;
-  double h;
-
+  Forces forces;
   Collocation collocation;
+  StartNodes nodes;       ///< the present spacing
   int evaluations = 0;    ///< of the forces, so far
   std::string reason;     ///< why the last spacing failed, or a remark about this spacing
 
-  struct Search;
   int most_values() const;
+  std::vector<const Fix *> owners() const;
   std::string names() const;
   bool lowers_order(const StartFound &start) const;
   std::string orders(const StartFound &start) const;
   double first_spacing() const;
-  StartFound search(Forces &forces);
-  MotionSums sums_of(const Starter &one, int pairs, double spacing) const;
-  void seed_all(const StartFound &start);
+  StartFound search();
+  bool visit_node(int node, double &change);
+  void put_back();
+  double fast_edge(const Starter &one, int pairs) const;
+  void seed_all(int pairs);
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -29,21 +29,17 @@ StartPlan::Verdict StartPlan::take(double change)
   return choose();
 }
 
-double StartPlan::allowed_part() const
-{
-  return odd || known < 5 ? ALLOWED : std::ldexp(ALLOWED, 3 * (4 - known));
-}
-
 double StartPlan::left_out() const
 {
-  if (odd || known < 2) return first[known];
+  if (wanted % 2 || known < 2) return first[known];
   return first[known] * std::min(1.0, first[known] / first[known - 1]);
 }
 
 StartPlan::Verdict StartPlan::choose()
 {
-  const bool more = known < most && first[known] > CONVERGED;
-  const double allowed = more ? 0.0 : std::max(CONVERGED, allowed_part() * left_out());
+  const bool more = known < pairs_for(wanted) && first[known] > CONVERGED;
+  const double part = wanted % 2 || known < 5 ? ALLOWED : std::ldexp(ALLOWED, 3 * (4 - known));
+  const double allowed = more ? 0.0 : std::max(CONVERGED, part * left_out());
   while (present < round)
     if (contraction * last[++present] > allowed) return Verdict::GOES_ON;
   const double next = contraction * *std::max_element(last + 1, last + known + 1);
@@ -123,9 +119,19 @@ void GearQuat::seed(const Scheme &scheme, const RigidBody &body, const TaylorSer
 
 void Collocation::Polynomial::make(int pairs)
 {
-  interpolate(pairs);
   for (int l = -pairs; l <= pairs; ++l) {
     const int column = column_of(l);
+    long double basis[MAX_NODES] = {1.0L}, denominator = 1.0L;    // Lagrange's, factor by factor
+    int degree = 0;
+    for (int root = -pairs; root <= pairs; ++root) {
+      if (root == l) continue;
+      ++degree;
+      for (int j = degree; j >= 0; --j)
+        basis[j] = (j > 0 ? basis[j - 1] : 0.0L) - root * (j < degree ? basis[j] : 0.0L);
+      denominator *= l - root;
+    }
+    for (int j = 0; j <= 2 * pairs; ++j) monomial[j][column] = basis[j] / denominator;
+
     for (int k = -pairs; k <= pairs; ++k) {
       long double twice = 0.0, once = 0.0, power = k;
       for (int j = 0; j <= 2 * pairs; ++j) {
@@ -145,24 +151,6 @@ void Collocation::Polynomial::make(int pairs)
   }
 }
 
-/// Lagrange's basis polynomials, multiplied out factor by factor.
-void Collocation::Polynomial::interpolate(int pairs)
-{
-  for (int l = -pairs; l <= pairs; ++l) {
-    long double basis[MAX_NODES] = {1.0L};
-    long double denominator = 1.0L;
-    int degree = 0;
-    for (int root = -pairs; root <= pairs; ++root) {
-      if (root == l) continue;
-      ++degree;
-      for (int j = degree; j >= 0; --j)
-        basis[j] = (j > 0 ? basis[j - 1] : 0.0L) - root * (j < degree ? basis[j] : 0.0L);
-      denominator *= l - root;
-    }
-    for (int j = 0; j <= 2 * pairs; ++j) monomial[j][column_of(l)] = basis[j] / denominator;
-  }
-}
-
 Collocation::Collocation(int values) : half(StartPlan::pairs_for(values)), polynomial(half + 1)
 {
   for (int pairs = 0; pairs <= half; ++pairs) polynomial[pairs].make(pairs);
@@ -176,54 +164,55 @@ void Collocation::begin(const RigidBody &body, const TaylorSeries &series, Works
   for (int i = 0; i < 3; ++i) {
     w.start[0][i] = series.c[0][i];
     w.start[1][i] = series.c[1][i];
-    w.rate[half][i] = 2.0 * series.c[2][i];
+    w.rate[i][half] = 2.0 * series.c[2][i];
     w.start[0][3 + i] = 0.0;
     w.start[1][3 + i] = series.momentum[0][i];
-    w.rate[half][3 + i] = series.momentum[1][i];
+    w.rate[3 + i][half] = series.momentum[1][i];
   }
 }
 
-template <int WIDTH>
 void Collocation::begin(const double *value, const double *first, const double *second,
-                        Nodes<WIDTH, 2> &w) const
+                        Nodes &w) const
 {
   w.pairs = 0;
-  std::copy_n(value, WIDTH, w.start[0]);
-  std::copy_n(first, WIDTH, w.start[1]);
-  std::copy_n(second, WIDTH, w.rate[half]);
+  for (int i = 0; i < WIDTH; ++i) {
+    w.start[0][i] = value[i];
+    w.start[1][i] = first[i];
+    w.rate[i][half] = second[i];
+  }
 }
 
 void Collocation::begin(double start, double rate, Scalar &s) const
 {
+  s.width = 1;
   s.pairs = 0;
   s.start[0][0] = start;
-  s.rate[half][0] = rate;
+  s.rate[0][half] = rate;
 }
 
-template <int WIDTH, int ORDER> void Collocation::foretell(Nodes<WIDTH, ORDER> &w) const
+void Collocation::foretell(Nodes &w) const
 {
   const Polynomial &inside = polynomial[w.pairs];
   const int next = w.pairs + 1;
   for (int side = 0; side < 2; ++side)
-    for (int i = 0; i < WIDTH; ++i) {
+    for (int i = 0; i < w.width; ++i) {
       double sum = 0.0;
       for (int l = -w.pairs; l <= w.pairs; ++l)
-        sum += inside.beyond[side][column_of(l)] * w.rate[half + l][i];
-      w.rate[half + (side ? next : -next)][i] = sum;
+        sum += inside.beyond[side][column_of(l)] * w.rate[i][half + l];
+      w.rate[i][half + (side ? next : -next)] = sum;
     }
   w.pairs = next;
 }
 
-template <int WIDTH>
-void Collocation::values_at(int node, const Nodes<WIDTH, 2> &w, double *value, double *rate) const
+void Collocation::values_at(int node, const Nodes &w, double *value, double *rate) const
 {
   const Polynomial &present = polynomial[w.pairs];
   for (int i = 0; i < WIDTH; ++i) {
     value[i] = w.start[0][i] + node * w.start[1][i];
     rate[i] = w.start[1][i];
     for (int l = -w.pairs; l <= w.pairs; ++l) {
-      value[i] += present.value[column_of(node)][column_of(l)] * w.rate[half + l][i];
-      rate[i] += present.rate[column_of(node)][column_of(l)] * w.rate[half + l][i];
+      value[i] += present.value[column_of(node)][column_of(l)] * w.rate[i][half + l];
+      rate[i] += present.rate[column_of(node)][column_of(l)] * w.rate[i][half + l];
     }
   }
 }
@@ -258,22 +247,16 @@ double Collocation::set_load(int node, const RigidBody &body, const BodyState &s
   }
   for (int i = 0; i < 6; ++i) {
     if (!std::isfinite(met[i])) return std::numeric_limits<double>::infinity();
-    change[i] = met[i] - w.rate[half + node][i];
+    change[i] = met[i] - w.rate[i][half + node];
   }
   return relative(change, met, state, length, w);
 }
 
-template <int WIDTH, int ORDER>
-void Collocation::set_rates(int node, const double *rates, Nodes<WIDTH, ORDER> &w) const
+void Collocation::settle(int pair, Nodes &w) const
 {
-  std::copy_n(rates, WIDTH, w.met[node > 0]);
-}
-
-template <int WIDTH, int ORDER> void Collocation::settle(int pair, Nodes<WIDTH, ORDER> &w) const
-{
-  for (int i = 0; i < WIDTH; ++i) {
-    w.rate[half - pair][i] = w.met[0][i];
-    w.rate[half + pair][i] = w.met[1][i];
+  for (int i = 0; i < w.width; ++i) {
+    w.rate[i][half - pair] = w.met[0][i];
+    w.rate[i][half + pair] = w.met[1][i];
   }
 }
 
@@ -283,7 +266,7 @@ TaylorSeries Collocation::series(const Workspace &w, int pairs) const
   double c[TaylorSeries::MAX_TERMS][6], q[Turn::MOST + 1][4];
   series.terms = terms_of(pairs);
   static_assert(MAX_NODES + 2 <= TaylorSeries::MAX_TERMS, "series too short for the nodes");
-  expand<6>(w, pairs, c[0]);
+  expand(w, pairs, c[0]);
   const int terms = momentum_of(w, pairs, 1, series.momentum);
   Turn::coefficients(w.body, series.momentum, terms, w.q, q);
   for (int j = 0; j < TaylorSeries::MAX_TERMS; ++j) {
@@ -293,7 +276,7 @@ TaylorSeries Collocation::series(const Workspace &w, int pairs) const
   return series;
 }
 
-template <int WIDTH> void Collocation::expand(const Nodes<WIDTH, 2> &w, int pairs, double *c) const
+void Collocation::expand(const Nodes &w, int pairs, double *c) const
 {
   for (int i = 0; i < WIDTH; ++i) {
     c[i] = w.start[0][i];
@@ -311,12 +294,11 @@ int Collocation::series(const Scalar &s, int pairs, double spacing, double *c) c
   return 2 * pairs + 2;
 }
 
-template <int WIDTH, int ORDER>
-long double Collocation::coefficient(int j, int i, const Nodes<WIDTH, ORDER> &w, int pairs) const
+long double Collocation::coefficient(int j, int i, const Nodes &w, int pairs) const
 {
   long double sum = 0.0;
   for (int l = -pairs; l <= pairs; ++l)
-    sum += polynomial[pairs].monomial[j][column_of(l)] * w.rate[half + l][i];
+    sum += polynomial[pairs].monomial[j][column_of(l)] * w.rate[i][half + l];
   return sum;
 }
 
@@ -324,7 +306,7 @@ int Collocation::momentum_of(const Workspace &w, int pairs, double spacings,
                              Turn::Momentum &found) const
 {
   double c[TaylorSeries::MAX_TERMS][6], power = spacings;
-  expand<6>(w, pairs, c[0]);
+  expand(w, pairs, c[0]);
   const int terms = terms_of(pairs) - 1;
   for (int k = 0; k < terms; ++k, power *= spacings)
     for (int i = 0; i < 3; ++i) found[k][i] = power * (k + 1) * c[k + 1][3 + i];
@@ -349,14 +331,3 @@ double Collocation::relative(const double *change, const double *second, const B
   }
   return std::max(part[0] / scale[0], part[1] / scale[1]);
 }
-
-using Bodies = Collocation::Nodes<6, 2>;    // and cells
-template void Collocation::begin(const double *, const double *, const double *, Bodies &) const;
-template void Collocation::foretell(Bodies &) const;
-template void Collocation::foretell(Scalar &) const;
-template void Collocation::values_at(int, const Bodies &, double *, double *) const;
-template void Collocation::set_rates(int, const double *, Bodies &) const;
-template void Collocation::set_rates(int, const double *, Scalar &) const;
-template void Collocation::settle(int, Bodies &) const;
-template void Collocation::settle(int, Scalar &) const;
-template void Collocation::expand(const Bodies &, int, double *) const;

@@ -55,20 +55,11 @@ class StartPlan {
 
   /// slowest: a change becomes smaller at most by this factor in another evaluation.  With a bath
   /// the loads change its variables first, and these change the loads one evaluation later.
-  explicit StartPlan(int values, double slowest = 0.0) :
-      wanted(values), odd(values % 2), most(pairs_for(values)), slowest(slowest)
-  {
-  }
+  explicit StartPlan(int values, double slowest = 0.0) : wanted(values), slowest(slowest) {}
   static constexpr double COUPLED = 0.1;
 
   /// Reduces the number of values.
-  void limit(int values)
-  {
-    if (values >= wanted) return;
-    wanted = values;
-    odd = values % 2;
-    most = pairs_for(values);
-  }
+  void limit(int values) { wanted = std::min(wanted, values); }
 
   /// The pair to be evaluated next, 1..pairs_for(values).
   int pair() const { return present; }
@@ -91,13 +82,10 @@ class StartPlan {
   // tolerance for the last changes, relative to the truncation error; smaller beyond four pairs,
   // since the highest derivatives multiply errors of the inner pairs, unless there is a spare pair
   static constexpr double ALLOWED = 0.03;
-  double allowed_part() const;
   // limit for the extrapolated errors inside, relative to the error of the last new pair
   static constexpr double CLEAR = 0.5;
 
-  int wanted;    ///< number of values
-  bool odd;      ///< odd number of values: one pair more than the order needs
-  int most;
+  int wanted;    ///< number of values; an odd one has one pair more than the order needs
   double slowest;
   int present = 1;             ///< pair that is evaluated
   int known = 0;               ///< pairs evaluated at least once
@@ -176,23 +164,25 @@ void seed(const Scheme &scheme, const RigidBody &body, const TaylorSeries &serie
 class Collocation {
  public:
   static constexpr int MAX_HALF = StartPlan::MAX_PAIRS;
-  static constexpr int MAX_NODES = 2 * MAX_HALF + 1;
+  static constexpr int MAX_NODES = 2 * MAX_HALF + 1, WIDTH = 6;
 
-  /// A function with WIDTH components and an equation of this ORDER: its exact start, and the
-  /// derivatives of that order at the nodes.  Both are in the units of the host; for a body, time is
-  /// in node spacings.
-  template <int WIDTH, int ORDER> struct Nodes {
+  /// Functions with equations of the first or second order: their exact start, and the derivatives
+  /// of that order at the nodes.  Both are in the units of the host; for a body, time is in node
+  /// spacings.
+  struct Nodes {
+    int width = WIDTH;                ///< number of functions
     int pairs;                        ///< of nodes that the polynomial goes through
-    double start[ORDER][WIDTH];       ///< the function, and its first derivative if ORDER is 2
-    double rate[MAX_NODES][WIDTH];    ///< node k in row pairs() + k
+    double start[2][WIDTH];           ///< the functions; of the second order, the first derivatives
+    double rate[WIDTH][MAX_NODES];    ///< node k in column pairs() + k
     double met[2][WIDTH];             ///< at the two nodes that are being evaluated
   };
-  /// x of a body in columns 0-2; columns 3-5 have the integral of its angular momentum.
-  struct Workspace : Nodes<6, 2> {
+  /// x of a body in rows 0-2; rows 3-5 have the integral of its angular momentum.
+  struct Workspace : Nodes {
     RigidBody body;
     double q[4];    ///< at the start
   };
-  using Scalar = Nodes<1, 1>;
+  /// A function with an equation of the first order.
+  using Scalar = Nodes;
 
   /// Uses the number of nodes required by the order of a history with `values` rows.
   explicit Collocation(int values);
@@ -204,20 +194,18 @@ class Collocation {
   /// terms, in units of the node spacing).
   void begin(const RigidBody &body, const TaylorSeries &series, Workspace &w) const;
 
-  /// Begins for any functions: their values, first and second derivatives.
-  template <int WIDTH>
-  void begin(const double *value, const double *first, const double *second,
-             Nodes<WIDTH, 2> &w) const;
+  /// Begins for six functions: their values, first and second derivatives.
+  void begin(const double *value, const double *first, const double *second, Nodes &w) const;
 
   /// Starts without pairs: a constant rate.
   void begin(double start, double rate, Scalar &s) const;
 
   /// Adds a pair, with the rates of the present polynomial.
-  template <int WIDTH, int ORDER> void foretell(Nodes<WIDTH, ORDER> &w) const;
+  void foretell(Nodes &w) const;
 
-  /// Functions and their first derivatives at a known node by the present polynomial.
-  template <int WIDTH>
-  void values_at(int node, const Nodes<WIDTH, 2> &w, double *value, double *rate) const;
+  /// Functions of the second order and their first derivatives at a known node by the present
+  /// polynomial.
+  void values_at(int node, const Nodes &w, double *value, double *rate) const;
 
   /// State of the body at a known node by the present polynomial; spacing: time between nodes.
   BodyState state_at(int node, const Workspace &w, double spacing) const;
@@ -228,22 +216,23 @@ class Collocation {
   double set_load(int node, const RigidBody &body, const BodyState &state, const Load &load,
                   double spacing, double length, Workspace &w) const;
 
-  /// Stores the rate of a scalar at a node.
-  void set_rate(int node, double rate, Scalar &s) const { set_rates(node, &rate, s); }
   /// Stores the rates of any functions at a node.
-  template <int WIDTH, int ORDER>
-  void set_rates(int node, const double *rates, Nodes<WIDTH, ORDER> &w) const;
+  void set_rates(int node, const double *rates, Nodes &w) const
+  {
+    std::copy_n(rates, w.width, w.met[node > 0]);
+  }
+  void set_rate(int node, double rate, Scalar &s) const { set_rates(node, &rate, s); }
 
   /// The rate at the start; rates at the other nodes are before and after it in memory.
-  const double *rate_at_start(const Scalar &s) const { return s.rate[half]; }
+  const double *rate_at_start(const Scalar &s) const { return s.rate[0] + half; }
 
   /// Updates the polynomial with both nodes of a pair, treated equally, for time reversibility.
-  template <int WIDTH, int ORDER> void settle(int pair, Nodes<WIDTH, ORDER> &w) const;
+  void settle(int pair, Nodes &w) const;
 
   /// The polynomial through the innermost `pairs` as a series in units of the node spacing.
   TaylorSeries series(const Workspace &w, int pairs) const;
-  /// The series of any functions: c[WIDTH * j + i] for term j of function i.
-  template <int WIDTH> void expand(const Nodes<WIDTH, 2> &w, int pairs, double *c) const;
+  /// The series of six functions of the second order: c[6 j + i] for term j of function i.
+  void expand(const Nodes &w, int pairs, double *c) const;
   /// The number of terms of a function with known second derivatives.
   static int terms_of(int pairs) { return 2 * pairs + 3; }
   TaylorSeries series(const Workspace &w) const { return series(w, w.pairs); }
@@ -267,15 +256,13 @@ class Collocation {
     double beyond[2][MAX_NODES];                   ///< at the nodes just outside
 
     void make(int pairs);
-    void interpolate(int pairs);
   };
 
   int half;
   std::vector<Polynomial> polynomial;    ///< through 0..half pairs
 
   /// Coefficient of s^j in the polynomial through the innermost `pairs`, component i.
-  template <int WIDTH, int ORDER>
-  long double coefficient(int j, int i, const Nodes<WIDTH, ORDER> &w, int pairs) const;
+  long double coefficient(int j, int i, const Nodes &w, int pairs) const;
 
   /// The series of L times `spacings` of the nodes, in units of this time.  Returns its terms.
   int momentum_of(const Workspace &w, int pairs, double spacings, Turn::Momentum &found) const;

@@ -50,7 +50,7 @@ Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &flee
     Pointers(lmp),
     fix(fix), args(args), ownership(ownership), time_step(lmp), bath(lmp, fix, args, bodies, sites),
     fleet(fleet), bodies(bodies), sites(sites), others(others), present(args.scheme),
-    blowup(lmp, args, bodies, sites, bath), tally(std::move(tally))
+    tally(std::move(tally))
 {
   if (args.control.eps > 0.0)
     tolerance = std::make_unique<Tolerance>(lmp, fix, args.scheme, args.control, args.every_time,
@@ -94,7 +94,7 @@ void Step::init()
           "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
           "do so",
           other->id, other->style);
-    if (same && same->args.scheme.tuned)
+    if (same && same->args.scheme.tuned())
       error->all(FLERR,
                  "Fix gear/quat tolerance: fix {} ({}) follows the changing time step, and with "
                  "tuned coefficients errors from a change decay too slowly; give it corrector "
@@ -169,7 +169,7 @@ void Step::take_velocities(bigint of_step, bool end)
    which histories continue
 ------------------------------------------------------------------------- */
 
-std::vector<Step::Starter> Step::start(double **f, double **torque)
+std::vector<Step *> Step::start(double **f, double **torque)
 {
   if (phase != Phase::SET_UP) {
     take_velocities(update->ntimestep - 1, true);
@@ -186,30 +186,24 @@ std::vector<Step::Starter> Step::start(double **f, double **torque)
     one->started = !one->has_to_start(f);
     if (!one->started) one->tolerance->begin(one->bath.longest_step(), fleet.members.front()->fix);
   }
-  std::vector<Starter> full;
+  // histories that could continue start with the others: one polynomial has the forces of all
+  std::vector<Step *> together;
+  int starts = 0;
   for (Step *one : fleet.members) {
     one->phase = Phase::READY;
     const bool needs = one->tolerance ? !one->started : one->has_to_start(f);
     if (needs) one->watch_loads(f);
     if (one->bootstraps()) {
-      full.push_back({one, needs});
+      together.push_back(one);
+      starts += needs;
     } else if (needs) {
       one->bath.box.refer_to_box(one->length());
       one->seed_local(one->tolerance ? 3 : 2);
       one->note_start();
     }
   }
-
-  // Histories that could continue also start again if this gives the other fixes a start of full
-  // order.
-
-  const auto goes_on = [](const Starter &one) {
-    return !one.needed;
-  };
-  if (std::all_of(full.begin(), full.end(), goes_on)) return {};
-  if (std::any_of(full.begin(), full.end(), goes_on) && !full[0].step->forces_can_be_followed())
-    full.erase(std::remove_if(full.begin(), full.end(), goes_on), full.end());
-  return full;
+  if (starts == 0) together.clear();
+  return together;
 }
 
 /// Returns null if the histories can continue.  Collective.
@@ -220,21 +214,10 @@ const char *Step::reason_to_start_anew(double **f)
     return "the time step is less than half of the previous one";
   if (now > LONGER * last && last != 0.0 && can_start_anew())
     return "the time step is more than twice the previous one";
-  if (!movers.empty() && movers != present_movers() && can_start_anew())
-    return "other fixes move atoms than in the last steps";
   if (const char *other = another_scheme_suits()) return other;
   const char *changed = bath.reason_to_start_anew();
   if (changed && (tolerance || (bootstraps() && forces_can_be_followed()))) return changed;
   return forces_changed(f) ? "forces have changed since the last step" : nullptr;
-}
-
-/// The other fixes that move atoms: the derivatives of forces depend on that motion.
-std::string Step::present_movers() const
-{
-  std::string ids = "of this run:";
-  for (const auto *other : modify->get_fix_list())
-    if (other != fix && other->time_integrate) ids += std::string(" ") + other->id;
-  return ids;
 }
 
 /// True if a new start would be of full order, and would change only the histories.
@@ -305,7 +288,6 @@ bool Step::has_to_start(double **f)
   if (reason && comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat {}: {}; histories are rebuilt\n", fix->id, reason);
   const bool needs = !started || reason;
-  movers = present_movers();
   for (int ibody = 0; ibody < bodies.nmoved() && !needs && scheme().is_verlet(); ++ibody) {
     project_norm(bodies.change_state(ibody).q);
     seed(ibody, 3);
@@ -323,7 +305,7 @@ void Step::seed(int ibody, int terms)
 
 void Step::seed_local(int terms)
 {
-  choose_scheme(MotionSums::unknown());
+  choose_scheme(HUGE_VAL);
   bath.measure();
   bath.seed_local(length(), terms);
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) seed(ibody, terms);
@@ -333,10 +315,11 @@ void Step::seed_local(int terms)
 void Step::note_start()
 {
   started = true;
-  note_rates(edge_of_start);
+  const bool noisy = noise_of_forces(lmp, ownership).noise != Noise::NONE;
+  const double edge = noisy || !std::isfinite(edge_of_start) ? 0.0 : edge_of_start;
+  note_rates(edge);
   warn_of_rates();
-  // an estimate for a blow-up
-  if (edge_of_start == 0.0) note_rates(edge_by_loads());
+  if (edge == 0.0) note_rates(edge_by_loads());    // an estimate for a blow-up
   if (tolerance) make_integrator();
 }
 
@@ -358,18 +341,20 @@ Step::Settings Step::settings() const
   for (int k = 0; k < PressureWords::COMPONENTS; ++k) components |= (int) box.on[k] << k;
   for (int k = 0; k < 3 && box.any(); ++k)
     components |= box.tied[k] << (PressureWords::COMPONENTS + 2 * k);
+  const bool any_temp = temp.damp > 0.0;
   return {(double) scheme.formulation,
           (double) scheme.values(),
           (double) scheme.compensate,
-          (double) scheme.remembers,
+          (double) scheme.remembers(),
           (double) args.isokinetic,
-          temp.is_random()      ? 3.0
-              : temp.damp > 0.0 ? 1.0 + temp.separate
-                                : 0.0,
-          (double) temp.length,
+          (double) any_temp,
           (double) components,
-          (double) box.length,
-          (double) scheme.tuned,
+          any_temp ? (double) temp.length : 0.0,
+          !any_temp              ? 0.0
+              : temp.is_random() ? 3.0
+                                 : 1.0 + temp.separate,
+          box.any() ? 1.0 + box.length : 0.0,
+          (double) scheme.tuned(),
           (double) args.states("corrector"),
           (double) started};
 }
@@ -377,27 +362,21 @@ Step::Settings Step::settings() const
 /// The keywords with another value in the file, without which histories cannot continue.
 std::vector<std::string> Step::other_settings(const Settings &mine) const
 {
-  static constexpr const char *KEYWORDS[TUNED] = {
-      "formulation", "values", "compensate", "tolerance",
-      "isokinetic",  "temp",   "tchain",     "iso, aniso, tri, x, y, z, xy, xz, yz or couple",
-      "pchain"};
+  static constexpr char BOX[] = "iso, aniso, tri, x, y, z, xy, xz, yz or couple";
+  constexpr const char *KEYWORDS[TUNED] = {"formulation", "values", "compensate", "tolerance",
+                                           "isokinetic",  "temp",   BOX,          "tchain",
+                                           "thermostat",  "pchain"};
+  if (of_file[FORMULATION] != mine[FORMULATION]) return {KEYWORDS[FORMULATION]};
   std::vector<std::string> others;
-  const auto both = [&](int n) {
-    return of_file[n] != 0.0 && mine[n] != 0.0;
-  };
-  for (int n = FORMULATION; n < TUNED; ++n) {
-    if (of_file[n] == mine[n]) continue;
-    // a default depends on the formulation
-    if (n == VALUES && !args.states("values") && !others.empty()) continue;
-    if ((n == TCHAIN && !both(TEMP)) || (n == PCHAIN && !both(BOX))) continue;
-    others.emplace_back(n == TEMP && both(TEMP) ? "thermostat" : KEYWORDS[n]);
-  }
+  for (int n = VALUES; n < TUNED; ++n)
+    if (of_file[n] != mine[n] && (n < TCHAIN || (of_file[n] != 0.0 && mine[n] != 0.0)))
+      others.emplace_back(KEYWORDS[n]);
   return others;
 }
 
 void Step::fields(Fields &v)
 {
-  v(time_step, edge_rate, movers, sites);
+  v(time_step, edge_rate, sites);
   if (tolerance) tolerance->fields(v);
   bath.fields(v);
 }
@@ -418,7 +397,8 @@ void Step::adopt_scheme(Fields &file)
     return;
   if (args.automatic_values) scheme.rows = (int) of_file[VALUES];
   if (scheme.values() != of_file[VALUES]) return;
-  if (!args.states("corrector")) scheme.tuned = of_file[TUNED] != 0.0;
+  if (!args.states("corrector"))
+    scheme.method = of_file[TUNED] != 0.0 ? Method::TUNED : Method::GEAR;
   set_scheme(scheme);
 }
 
@@ -442,13 +422,13 @@ bool Step::read(Fields &file)
     utils::logmesg(lmp, "Fix gear/quat {}: histories of the restart file go on{}\n", fix->id,
                    tolerance ? ""
                              : fmt::format(" with values {}, corrector {}", scheme().values(),
-                                           corrector(scheme().tuned)));
+                                           corrector(scheme().tuned())));
   if (started && of_file[TUNED] != mine[TUNED])
     error->warning(
         FLERR,
         "Fix gear/quat: the restart file was written with corrector {}; its histories go "
         "on with corrector {}",
-        corrector(of_file[TUNED] != 0.0), corrector(scheme().tuned));
+        corrector(of_file[TUNED] != 0.0), corrector(scheme().tuned()));
   if (of_file[STARTED] != 0.0 && !others.empty())
     error->warning(
         FLERR,
@@ -462,63 +442,49 @@ bool Step::read(Fields &file)
    the number of values, where the command does not state it
 ------------------------------------------------------------------------- */
 
-/// Estimates of the motion, from loads, of the bodies that this rank owns.
-MotionSums Step::sums_by_loads() const
+/// For vibrations of these radians in a step.  Collective.
+Choice Step::choose(double edge, int present) const
 {
-  MotionSums here;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    double torque_body[3];
-    to_body(bodies.axes(ibody), bodies.acting(ibody).torque_space, torque_body);
-    here.add(bodies.rigid_of(ibody), bodies.state_of(ibody), torque_body);
-  }
-  return here;
+  const Noise noise = noise_of_forces(lmp, ownership).noise;
+  return Choice(args.scheme, edge, noise, args.states("corrector"), present);
 }
 
-/// Input to the choice.  here: of the bodies that this rank owns.  Collective.
-ChoiceOfValues Step::scene_of(const MotionSums &here) const
+/// Radians of vibrations in a step, of the bodies on all ranks; infinite if unknown.  here: of the
+/// bodies that this rank owns.  Collective.
+double Step::fast_edge(MotionSums here) const
 {
-  MotionSums all = here;
-  const auto sums = over_ranks(MPI_SUM, all.sums, world);
-  std::copy(sums.begin(), sums.end(), all.sums);
-  ChoiceOfValues scene;
-  scene.edge = bodies.number() > 0 ? all.fast_edge(length()) : HUGE_VAL;
-  scene.exact = all.knows_derivatives(length());
-  scene.noise = noise_of_forces(lmp, ownership).noise;
-  scene.may_be_gear = !args.states("corrector");
-  return scene;
+  const auto sums = over_ranks(MPI_SUM, here.sums, world);
+  std::copy(sums.begin(), sums.end(), here.sums);
+  return bodies.number() > 0 ? here.fast_edge(length()) : HUGE_VAL;
 }
 
-/// Histories have this scheme after the call.
-Scheme Step::choose_scheme(const MotionSums &here)
+/// Histories have the chosen scheme after the call.
+void Step::choose_scheme(double edge)
 {
-  const ChoiceOfValues scene = scene_of(here);
-  if (args.automatic_values) {
-    const ChoiceOfValues::Choice choice = scene.choose(args.scheme);
-    edge_rate = scene.edge / std::fabs(length());
-    tell_choice(scene, choice);
-    set_scheme(choice.scheme);
-  }
-  edge_of_start = scene.exact && scene.noise == Noise::NONE ? scene.edge : 0.0;
-  return scheme();
+  edge_of_start = edge;
+  if (!args.automatic_values) return;
+  edge_rate = edge / std::fabs(length());
+  const Choice choice = choose(edge);
+  tell(choice, edge);
+  set_scheme(choice.scheme);
 }
 
 /// Collective.
-void Step::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const
+void Step::tell(const Choice &choice, double edge) const
 {
-  using Reason = ChoiceOfValues::Reason;
   const NoisyForces forces = noise_of_forces(lmp, ownership);    // on all ranks
   if (comm->me != 0) return;
   std::string why;
-  if (choice.reason == Reason::NOISE)
+  if (choice.reason == Choice::NOISE)
     why = "because " + forces.words();
-  else if (choice.reason == Reason::FORMULATION)
+  else if (choice.reason == Choice::FORMULATION)
     why = "as always with corrector gear";
-  else if (std::isfinite(scene.edge))
-    why = fmt::format("for vibrations of {:.2g} radians in a step", scene.edge);
+  else if (std::isfinite(edge))
+    why = fmt::format("for vibrations of {:.2g} radians in a step", edge);
   else
     why = bodies.number() > 0 ? "because the motion is not known before it begins"
                               : "because there are no bodies yet";
-  const bool other_corrector = choice.scheme.tuned != args.scheme.tuned;
+  const bool other_corrector = choice.scheme.tuned() != args.scheme.tuned();
   utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
                  choice.scheme.is_verlet() ? " (velocity Verlet)"
                      : other_corrector     ? " and corrector gear"
@@ -526,72 +492,16 @@ void Step::tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice
                  why);
 }
 
-/* ----------------------------------------------------------------------
-   the table of rates
-------------------------------------------------------------------------- */
-
-/// The table for the present step.  edge: radians of vibrations in a step.  The bath is first,
-/// because it also accelerates bodies.  Collective.
-void Step::note_rates(double edge)
-{
-  if (tolerance) return;
-  std::vector<Rate> &table = blowup.rates;
-  table.clear();
-  const double h = std::fabs(length());
-  table = bath.rates(h);
-  const auto add = [&](const char *what, double radians, double limit, double advised) {
-    table.push_back(
-        {what, radians, limit,
-         fmt::format("use a time step of {:g} or shorter", rounded_down(h * advised / radians))});
-  };
-  double omega = 0.0;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    omega = std::max(omega, GearQuat::length(bodies.state_of(ibody).omega_body));
-  omega = over_ranks(MPI_MAX, omega, world);
-  // free rotations are exact in formulation momentum, but the forces on them are not
-  constexpr double PART = 2.0 / 3.0, TURN = 0.5;
-  const Scheme &now = scheme();
-  const double longest = ChoiceOfValues::longest_edge(now), stable = fastest_oscillation(now);
-  add("the angle of vibrations is", edge, longest, PART * longest);
-  add("the angle by which the fastest body turns is", h * omega,
-      now.momentum() ? MotionLimits::TURN : stable, std::min(PART * stable, TURN));
-}
-
-/// Radians of vibrations in a step by the present loads, of many bodies; 0 if they do not show
-/// them.  Collective.
-double Step::edge_by_loads() const
-{
-  constexpr bigint MANY = 10;
-  const ChoiceOfValues scene = scene_of(sums_by_loads());
-  const bool known = std::isfinite(scene.edge) && scene.noise == Noise::NONE;
-  return known && bodies.number() >= MANY ? scene.edge : 0.0;
-}
-
-/// Rank 0 warns once of the first rate that is too large; others may have the same cause.
-void Step::warn_of_rates()
-{
-  for (const auto &rate : blowup.rates) {
-    if (!(rate.part() > 1.0)) continue;
-    if (warned.insert(rate.what).second && comm->me == 0)
-      error->warning(FLERR, "Fix gear/quat {}: {}", fix->id, words_of(rate));
-    return;
-  }
-}
-
 /// Returns the reason to start histories again with another number of values, null for none.
 /// Reasons are a change of the step or of forces.  Vibrations are from the last start.  Collective.
-const char *Step::another_scheme_suits()
+const char *Step::another_scheme_suits() const
 {
   if (!args.automatic_values || edge_rate == 0.0) return nullptr;
-  ChoiceOfValues scene = scene_of(MotionSums());
-  scene.edge = edge_rate * std::fabs(length());
-  using Reason = ChoiceOfValues::Reason;
   const Scheme &present = scheme();
-  const ChoiceOfValues::Choice choice = scene.choose(args.scheme, present.values());
-  if (choice.scheme.values() == present.values() && choice.scheme.tuned == present.tuned)
+  const Choice choice = choose(edge_rate * std::fabs(length()), present.values());
+  if (choice.scheme.values() == present.values() && choice.scheme.tuned() == present.tuned())
     return nullptr;
-  if (choice.reason != Reason::MOTION && choice.reason != Reason::FORMULATION)
-    return "forces suit another number of values";
+  if (choice.reason == Choice::NOISE) return "forces suit another number of values";
   return can_start_anew() ? "the motion suits another number of values" : nullptr;
 }
 
@@ -656,7 +566,7 @@ void Step::predict(double **f)
   find_limits(h);
   const auto check = [&](int ibody) {
     const BodyState &state = bodies.state_of(ibody);
-    if (!tolerance && !blowup.limits.keep_velocities(state)) blowup.stop(ibody, state, h, f);
+    if (!tolerance && !limits.keep_velocities(state)) stop(ibody, state, h, f);
   };
   constexpr int WIDTH = Scheme::SECOND_WIDTH;    // with velocities of half a step before
   std::array<double, 2 * WIDTH> half;
@@ -705,12 +615,12 @@ void Step::correct(double **f)
     if (tolerance) tolerance->note_correction(*integrator, bath);
     return;
   }
-  for (const int ibody : bodies.points) correct_body(ibody, true, f);
-  for (const int ibody : bodies.tops) correct_body(ibody, false, f);
+  for (const int ibody : bodies.points) correct_body<true>(ibody, f);
+  for (const int ibody : bodies.tops) correct_body<false>(ibody, f);
 }
 
-/// is_point: without moments of inertia.
-inline void Step::correct_body(int ibody, bool is_point, double **f)
+/// IS_POINT: without moments of inertia.
+template <bool IS_POINT> inline void Step::correct_body(int ibody, double **f)
 {
   double *rows = bodies.history(ibody);
   const Body &body = bodies.body_at(ibody);
@@ -721,11 +631,11 @@ inline void Step::correct_body(int ibody, bool is_point, double **f)
   Correction &last = bodies.change_last(ibody);
   if (tolerance)
     last = tolerance->correct(*integrator, ibody, load);
-  else if (is_point)
+  else if (IS_POINT)
     last = integrator->correct_center(body.rigid, load, rows);
   else
     last = integrator->correct(body.rigid, load, bodies.axes(ibody), rows);
-  if (is_point)
+  if (IS_POINT)
     integrator->center_state(body.rigid, rows, state);
   else
     integrator->body_state(body.rigid, rows, state, bodies.change_frame(ibody));
@@ -754,43 +664,21 @@ void Step::accept(double **f)
   bath.note_step(h);
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
-    blowup.watch_load(ibody, h, f);
+    watch_load(ibody, h, f);
     seed(ibody, known);
   }
   if (!bodies.fresh.empty()) bodies.take_in_fresh();
   bath.follow_changes(h);
 }
 
-/// Ends the run if the present loads would make a body unstable in the next step.
-void Step::watch_loads(double **f)
-{
-  find_limits(length());
-  blowup.watch_loads(length(), f);
-}
-
-/// A shrink-wrapped box sets no limits.
-void Step::find_limits(double h)
-{
-  constexpr int SHRINKS = 2;    // LAMMPS' boundary codes from this code on are shrink-wrapped
-  double longest = 0.0;
-  for (int k = 0; k < 3; ++k) {
-    const int *faces = domain->boundary[k];
-    const bool follows = faces[0] >= SHRINKS || faces[1] >= SHRINKS;
-    longest = std::max(longest, follows ? HUGE_VAL : domain->prd[k]);
-  }
-  blowup.limits = MotionLimits(h, longest);
-  if (tolerance && args.control.shortest == 0.0)    // turns are exact, and errors small
-    blowup.limits.rate2 = HUGE_VAL;
-}
-
 /// Tests a corrected state.
-inline void Step::watch(int ibody, double **f)
+inline void Step::watch(int ibody, double **f) const
 {
   const BodyState &state = bodies.state_of(ibody);
-  if (!blowup.limits.keep(state)) blowup.stop(ibody, state, integrator->step(), f);
+  if (!limits.keep(state)) stop(ibody, state, integrator->step(), f);
 }
 
-void Step::watch_all(double **f)
+void Step::watch_all(double **f) const
 {
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list) watch(ibody, f);

@@ -26,17 +26,15 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_bath.h"
-#include "gear_quat_blowup.h"
-#include "gear_quat_choice.h"
 #include "gear_quat_fixes.h"
 #include "gear_quat_forces.h"
+#include "gear_quat_stability.h"
 #include "gear_quat_tolerance.h"
 
 #include <array>
 #include <functional>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -54,6 +52,9 @@ enum class Phase {
 };
 
 class Step;
+
+/// The form of all sentences about rates, without a full stop.
+std::string words_of(const Rate &rate);
 
 /// All fixes gear/quat of a run, in the order in which they begin a step.  Their bodies act on each
 /// other, so their histories start together.
@@ -101,13 +102,9 @@ class Step : protected Pointers {
 
   // a step; f, torque: of atoms; all collective
 
-  struct Starter {
-    Step *step;
-    bool needed;    ///< false if there are histories, which can continue
-  };
   /// f, torque: of the previous step, from all pair styles and fixes.  Returns the fixes that begin
   /// together with a start of full order, none if all histories can continue.
-  std::vector<Starter> start(double **f, double **torque);
+  std::vector<Step *> start(double **f, double **torque);
   void begin(int vflag, double **f);
   /// f, torque: of the predicted sites.
   void end(double **f, double **torque);
@@ -155,17 +152,15 @@ class Step : protected Pointers {
   Sites &sites;
   OtherFixes &others;
   Scheme present;    ///< without keyword tolerance
-  Blowup blowup;
   Tally tally;
   std::unique_ptr<Integrator> integrator;
   int vflag_of_step = 0;           ///< LAMMPS' vflag when the step began
   std::map<tagint, Mask> masks;    ///< of the command, by the IDs of bodies
-  std::string movers;              ///< IDs of the other fixes that moved atoms in the last steps
 
-  /// Settings in a restart file: histories continue only if the keywords before TUNED are the same.
-  static constexpr int FORMULATION = 0, VALUES = 1, COMPENSATE = 2, TOLERANCE = 3, ISOKINETIC = 4,
-                       TEMP = 5, TCHAIN = 6, BOX = 7, PCHAIN = 8, TUNED = 9, STATES_CORRECTOR = 10,
-                       STARTED = 11, SETTINGS = 12;
+  /// Settings in a restart file: histories continue only if the keywords before TUNED are the same;
+  /// from TCHAIN on, where they are off (0) they may differ.
+  static constexpr int FORMULATION = 0, VALUES = 1, TOLERANCE = 3, TCHAIN = 7, TUNED = 10,
+                       STATES_CORRECTOR = 11, STARTED = 12, SETTINGS = 13;
   using Settings = std::array<double, SETTINGS>;
   Settings of_file = {};
   Settings settings() const;
@@ -192,40 +187,48 @@ class Step : protected Pointers {
   const char *reason_to_start_anew(double **f);
   bool can_start_anew() const;
   bool forces_can_be_followed() const;
-  std::string present_movers() const;
   bool forces_changed(double **f);
   double rounding(int ibody, double force) const;
 
   // the number of values
 
-  double edge_rate = 0.0;          ///< fast edge divided by the step, if the number was chosen
-  double edge_of_start = 0.0;      ///< radians of vibrations in a step, if the start has found them
-  std::set<std::string> warned;    ///< of these rates
-  ChoiceOfValues scene_of(const MotionSums &here) const;
-  MotionSums sums_by_loads() const;
-  Scheme choose_scheme(const MotionSums &here);
-  Scheme foresee_scheme(const MotionSums &here) const
-  {
-    return scene_of(here).choose(args.scheme).scheme;
-  }
-  void tell_choice(const ChoiceOfValues &scene, const ChoiceOfValues::Choice &choice) const;
+  double edge_of_start = 0.0;    ///< fast edge in the last start
+  double edge_rate = 0.0;        ///< the same divided by the step, if the number was chosen
+  Choice choose(double edge, int present = 0) const;
+  double fast_edge(MotionSums here) const;
+  void choose_scheme(double edge);
+  void tell(const Choice &choice, double edge) const;
+  const char *another_scheme_suits() const;
+
+  // the table of rates
+
+  std::vector<Rate> rates;    ///< of the motion of bodies, as of the last look
+  std::string warned;         ///< of this rate
   void note_rates(double edge);
+  std::vector<Rate> all_rates(double h) const;
   double edge_by_loads() const;
   void warn_of_rates();
-  const char *another_scheme_suits();
+
+  // limits
+
+  MotionLimits limits;    ///< for the current step and box
+  void find_limits(double h);
+  void watch_loads(double **f);
+  void watch_load(int ibody, double h, double **f) const;
+  void watch(int ibody, double **f) const;
+  void watch_all(double **f) const;
+  [[noreturn]] void stop(int ibody, const BodyState &s, double h, double **f) const;
+  std::string what_happened(int ibody, const BodyState &s, double h) const;
+  std::string remedy(int ibody, const BodyState &s, double h) const;
 
   // a step
 
   void predict(double **f);
   void place_prediction();
   void correct(double **f);
-  void correct_body(int ibody, bool is_point, double **f);
+  template <bool IS_POINT> void correct_body(int ibody, double **f);
   void shorten();
   void accept(double **f);
-  void watch(int ibody, double **f);
-  void watch_all(double **f);
-  void watch_loads(double **f);
-  void find_limits(double h);
 
   // the length of the step
 

@@ -6,7 +6,6 @@
 #include "gear_quat_tolerance.h"
 
 #include "gear_quat_known_styles.h"
-#include "gear_quat_limits.h"
 #include "gear_quat_ranks.h"
 
 #include "comm.h"
@@ -100,7 +99,9 @@ void Tolerance::begin(double permitted, const Fix *first)
   size = std::max(size, control.shortest);
   size = std::fabs(even(std::copysign(size, given), time_step.beginning()));
   if (size == std::fabs(given)) return;
-  if (const Fix *other = integrated_before(first)) {
+  for (const auto *other : modify->get_fix_list()) {    // in the order in which they begin a step
+    if (other == first) break;
+    if (!other->time_integrate) continue;
     if (size < std::fabs(given) && comm->me == 0)
       error->warning(FLERR,
                      "Fix gear/quat tolerance: the first step of {:.3g} should be no longer than "
@@ -132,16 +133,6 @@ double Tolerance::first_step() const
     if (jerk > 0.0) least = std::min(least, control.first_step(jerk, speed, body.rigid.mass));
   }
   return over_ranks(MPI_MIN, least, world);
-}
-
-/// A fix that has begun this step before `begins` begins it, null for none.
-const Fix *Tolerance::integrated_before(const Fix *begins) const
-{
-  for (const auto *other : modify->get_fix_list()) {    // in the order in which they begin a step
-    if (other == begins) break;
-    if (other->time_integrate) return other;
-  }
-  return nullptr;
 }
 
 /* ----------------------------------------------------------------------
@@ -218,7 +209,7 @@ void Tolerance::begin_step()
   if (forces) bodies.keep_histories();
 }
 
-/// The first step of a run.  Rank 0 reports if no step can be repeated, once for each reason.
+/// The first step of a run.  Rank 0 reports if no step can be repeated.
 void Tolerance::begin_run()
 {
   forces = std::make_unique<Forces>(lmp, std::vector<const Fix *>{fix});
@@ -226,15 +217,13 @@ void Tolerance::begin_run()
   for (const auto *one : modify->get_compute_list())
     if (why.empty() && adds_up(one))
       why = fmt::format("compute {} ({}) adds up every evaluation of forces", one->id, one->style);
-  if (!why.empty()) {
-    forces.reset();
-    if (comm->me == 0 && why != told)
-      utils::logmesg(lmp,
-                     "Fix gear/quat tolerance: no step is repeated, because {}; errors exceed the "
-                     "tolerance where forces change suddenly\n",
-                     why);
-    told = why;
-  }
+  if (why.empty()) return;
+  forces.reset();
+  if (comm->me == 0)
+    utils::logmesg(lmp,
+                   "Fix gear/quat tolerance: no step is repeated, because {}; errors exceed the "
+                   "tolerance where forces change suddenly\n",
+                   why);
 }
 
 Correction Tolerance::correct(const Integrator &integrator, int ibody, const Load &load)
@@ -336,17 +325,12 @@ bool Tolerance::accepts()
 
 void Tolerance::refuse_lost() const
 {
-  if (tries == MOST_TRIES)
-    error->all(
-        FLERR,
-        "Fix gear/quat tolerance: step {} was tried {} times, and its error is {:.2g} still at a "
-        "time step of {:.3g}; the forces are not continuous, or the tolerance is smaller "
-        "than their rounding",
-        update->ntimestep, tries + 1, errors.error * unit_of_error(), update->dt);
-  error->all(FLERR,
-             "Fix gear/quat tolerance: the estimated error of step {} is not a number; the forces "
-             "are wrong, or the motion is lost: use a smaller tolerance",
-             update->ntimestep);
+  error->all(
+      FLERR,
+      "Fix gear/quat tolerance: step {} was tried {} times, and its error is {:.2g} still at "
+      "a time step of {:.3g}; the forces are not continuous or no numbers, or the tolerance "
+      "is smaller than their rounding",
+      update->ntimestep, tries + 1, errors.error * unit_of_error(), update->dt);
 }
 
 /// Refuses a step so short that the time would not change.
@@ -377,7 +361,13 @@ void Tolerance::shorten_step()
 double Tolerance::choose(double permitted)
 {
   const double step = update->dt;
-  note_step(std::fabs(step));
+  const double size = std::fabs(step);
+  record.smallest = record.steps == 0.0 ? size : std::min(record.smallest, size);
+  record.steps += 1.0;
+  record.time += size;
+  record.loads += remembered.loads();
+  record.largest = std::max(record.largest, errors.error / control.eps);
+  record.last = errors.error;
   auto next =
       control.next(errors, step, remembered, growing, std::min(permitted, farthest_step(speed)));
   if (fresh) {    // fresh histories have the present load only
@@ -454,21 +444,6 @@ void Tolerance::order_output()
   announced = -1;
   if (every_time > 0.0 && is_even(update->atime + update->dt, update->dt)) announce_output();
 }
-
-/// Adds the present step to the sums for the outputs.
-void Tolerance::note_step(double size)
-{
-  record.smallest = record.steps == 0.0 ? size : std::min(record.smallest, size);
-  record.steps += 1.0;
-  record.time += size;
-  record.loads += remembered.loads();
-  record.largest = std::max(record.largest, errors.error / control.eps);
-  record.last = errors.error;
-}
-
-/* ----------------------------------------------------------------------
-   another evaluation of the forces
-------------------------------------------------------------------------- */
 
 void Tolerance::evaluate(int vflag)
 {

@@ -148,8 +148,7 @@ class Tolerance : protected Pointers {
   double every_time;
   RememberedLoads remembered;
   Growth growing = Growth::START;
-  std::unique_ptr<Forces> forces;            ///< null if no step of the run can be repeated
-  std::string told;                          ///< the last reported reason for that
+  std::unique_ptr<Forces> forces;                 ///< null if no step of the run can be repeated
   std::vector<RememberedLoads::Row> predicted;    ///< accelerations of bodies corrected together
   StepErrors errors;           ///< of the bodies corrected so far; of all, once judged
   double speed = 0.0;          ///< upper limit of the speeds of all sites
@@ -160,7 +159,6 @@ class Tolerance : protected Pointers {
   Record record = {};
 
   void change_loads(int loads);
-  const Fix *integrated_before(const Fix *begins) const;
   double largest_speed() const;
   double limit_of_motion() const;
   double farthest_step(double speed) const;
@@ -174,7 +172,6 @@ class Tolerance : protected Pointers {
   void begin_run();
   void refuse_lost() const;
   void refuse_frozen() const;
-  void note_step(double size);
 };
 
 }    // namespace LAMMPS_NS::GearQuat

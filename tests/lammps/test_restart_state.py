@@ -171,7 +171,6 @@ NOT_IN_A_FILE = {
         DERIVED: "present",
         RUN: "forces announced",
         STEP: "predicted errors speed tries failed fresh",
-        MESSAGES: "told",
     },
     "temperature Temperature": {
         COMMAND: "subtracted stop of_bodies words of_pressure",
@@ -203,9 +202,9 @@ NOT_IN_A_FILE = {
     },
     "step Step": {
         COMMAND: "masks args present",
-        OTHERS: "fix fleet bodies ownership others blowup tally",
+        OTHERS: "fix fleet bodies ownership others tally",
         DERIVED: "integrator started",
-        RUN: "phase edge_of_start of_file velocities_read",
+        RUN: "phase edge_of_start of_file velocities_read rates limits",
         STEP: "vflag_of_step",
         MESSAGES: "warned",
     },

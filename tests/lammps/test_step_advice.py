@@ -180,7 +180,7 @@ def test_a_dtmin_that_is_too_long(lmp_tree):
         first, _, last = deck(lmp_tree, "n2", 40.0, 100).rpartition("report no")
         return f"{first}report no {keywords}{last}"
 
-    lmp_tree.refuse(run("tolerance 1e-4 dtmin 1000"), "leave out dtmin, or use one much shorter than 1000")
+    lmp_tree.refuse(run("tolerance 1e-4 dtmin 1000"), "and no dtmin")
     for keywords in ("tolerance 1e-4", "tolerance 1e-4 dtmin 4"):
         assert drift(lmp_tree.succeed(run(keywords)).thermo[-1]) < MOST_DRIFT
 

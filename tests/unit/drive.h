@@ -37,7 +37,7 @@ inline Scheme scheme_of(Formulation formulation, int values = 0, int passes = 1,
 {
   Scheme scheme;
   scheme.formulation = formulation;
-  scheme.tuned = scheme.momentum();
+  if (scheme.momentum()) scheme.method = Method::TUNED;
   scheme.rows = values;
   scheme.passes = passes;
   scheme.compensate = compensate;

@@ -176,7 +176,7 @@ struct Host {
     Collocation collocation;
     vector<BodyState> at_start;
     vector<Collocation::Workspace> work;
-    Collocation::Nodes<Upper::SIZE, 2> cell = {};
+    Collocation::Nodes cell = {};
     Collocation::Scalar twice = {}, twice_box = {}, heat = {};
 
     Search(Host &our) :
@@ -209,7 +209,7 @@ struct Host {
       for (size_t b = 0; b < work.size(); ++b)
         collocation.begin(our.bodies[b],
                           local_series(our.bodies[b], our.scaled[b], loads[b], our.h), work[b]);
-      collocation.begin<Upper::SIZE>(our.matrix.m.data(),
+      collocation.begin(our.matrix.m.data(),
                                      (our.rate * our.matrix).scaled(our.h).m.data(),
                                      second.m.data(), cell);
       collocation.begin(0.0, our.twice_kinetic(), twice);

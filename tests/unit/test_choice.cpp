@@ -1,10 +1,9 @@
-/* gear_quat_choice.h: the fast edge of known motions, and the number of values for each case. */
+/* gear_quat_stability.h: the fast edge of known motions, and the number of values for each case. */
 
-#include "gear_quat_choice.h"
+#include "gear_quat_stability.h"
 #include "scenes.h"
 
 using namespace Drive;
-using Reason = ChoiceOfValues::Reason;
 
 namespace {
 
@@ -47,11 +46,9 @@ MotionSums sums_of_start(const RigidBody &body, const BodyState &s, const LoadOf
   return sums;
 }
 
-ChoiceOfValues scene(double edge)
+Choice choose(const Scheme &scheme, double edge, int present = 0)
 {
-  ChoiceOfValues scene;
-  scene.edge = edge;
-  return scene;
+  return Choice(scheme, edge, Noise::NONE, false, present);
 }
 
 }    // namespace
@@ -115,29 +112,29 @@ TEST(FastEdge, ByLoadsIsOfTheMeanSquareFrequency)
 TEST(Choice, SlowMotionHasNineAndFastMotionFive)
 {
   const Scheme scheme = automatic(MOMENTUM);
-  const double edge = ChoiceOfValues::EDGE_OF_NINE;
-  EXPECT_EQ(scene(0.99 * edge).choose(scheme).scheme.values(), 9);
-  EXPECT_EQ(scene(1.01 * edge).choose(scheme).scheme.values(), 5);
-  EXPECT_EQ(scene(INFINITY).choose(scheme).scheme.values(), 5);
-  EXPECT_EQ(scene(0.1).choose(scheme).reason, Reason::MOTION);
+  const double edge = Choice::EDGE_OF_NINE;
+  EXPECT_EQ(choose(scheme, 0.99 * edge).scheme.values(), 9);
+  EXPECT_EQ(choose(scheme, 1.01 * edge).scheme.values(), 5);
+  EXPECT_EQ(choose(scheme, INFINITY).scheme.values(), 5);
+  EXPECT_EQ(choose(scheme, 0.1).reason, Choice::MOTION);
 }
 
 TEST(Choice, APresentNumberStaysWithinABand)
 {
   const Scheme scheme = automatic(MOMENTUM);
-  const double edge = ChoiceOfValues::EDGE_OF_NINE, band = ChoiceOfValues::BAND;
+  const double edge = Choice::EDGE_OF_NINE, band = Choice::BAND;
   for (const double part : {0.99 / band, 1.01 / band, 0.99 * band, 1.01 * band}) {
-    EXPECT_EQ(scene(part * edge).choose(scheme, 9).scheme.values(), part < band ? 9 : 5);
-    EXPECT_EQ(scene(part * edge).choose(scheme, 5).scheme.values(), part < 1.0 / band ? 9 : 5);
+    EXPECT_EQ(choose(scheme, part * edge, 9).scheme.values(), part < band ? 9 : 5);
+    EXPECT_EQ(choose(scheme, part * edge, 5).scheme.values(), part < 1.0 / band ? 9 : 5);
   }
 }
 
 TEST(Choice, OtherMethodsHaveTheirOwnNumber)
 {
   for (const double edge : {0.0, 0.3, 0.9}) {
-    EXPECT_EQ(scene(edge).choose(automatic(FIRST)).scheme.values(), 6);
-    EXPECT_EQ(scene(edge).choose(automatic(SECOND)).scheme.values(), 8);
-    EXPECT_EQ(scene(edge).choose(automatic(FIRST)).reason, Reason::FORMULATION);
+    EXPECT_EQ(choose(automatic(FIRST), edge).scheme.values(), 6);
+    EXPECT_EQ(choose(automatic(SECOND), edge).scheme.values(), 8);
+    EXPECT_EQ(choose(automatic(FIRST), edge).reason, Choice::FORMULATION);
   }
 }
 
@@ -146,20 +143,16 @@ TEST(Choice, WithRandomAndDissipativeForcesNothingHeats)
   for (const Formulation formulation : FORMULATIONS)
     for (const Noise noise : {Noise::RANDOM, Noise::DISSIPATIVE})
       for (const double edge : {0.0, 0.5}) {
-        ChoiceOfValues noisy = scene(edge);
-        noisy.noise = noise;
-        const auto choice = noisy.choose(automatic(formulation));
+        const Choice choice(automatic(formulation), edge, noise, false);
         EXPECT_TRUE(suits_noise(choice.scheme, noise));
-        EXPECT_EQ(choice.reason, Reason::NOISE);
+        EXPECT_EQ(choice.reason, Choice::NOISE);
         EXPECT_EQ(choice.scheme.is_verlet(), noise == Noise::RANDOM && formulation != FIRST);
       }
-  ChoiceOfValues noisy = scene(0.0);
-  noisy.noise = Noise::DISSIPATIVE;
-  EXPECT_EQ(noisy.choose(automatic(MOMENTUM)).scheme.values(), 4);
-  EXPECT_FALSE(noisy.choose(automatic(MOMENTUM)).scheme.tuned);
+  const Choice noisy(automatic(MOMENTUM), 0.0, Noise::DISSIPATIVE, false);
+  EXPECT_EQ(noisy.scheme.values(), 4);
+  EXPECT_FALSE(noisy.scheme.tuned());
   // a given corrector is kept in any case
-  noisy.may_be_gear = false;
-  EXPECT_TRUE(noisy.choose(automatic(MOMENTUM)).scheme.tuned);
+  EXPECT_TRUE(Choice(automatic(MOMENTUM), 0.0, Noise::DISSIPATIVE, true).scheme.tuned());
 }
 
 TEST(Choice, AVibrationIsFollowedUpToTwoThirdsOfTheFastest)
@@ -167,7 +160,7 @@ TEST(Choice, AVibrationIsFollowedUpToTwoThirdsOfTheFastest)
   const auto longest = [](int values, bool is_tuned) {
     Scheme scheme = automatic(is_tuned ? MOMENTUM : SECOND);
     scheme.rows = values;
-    return ChoiceOfValues::longest_edge(scheme);
+    return longest_edge(scheme);
   };
   EXPECT_NEAR(longest(9, true), 0.40, 0.001);
   EXPECT_NEAR(longest(7, true), 0.47, 0.004);
@@ -211,7 +204,7 @@ TEST(Choice, ConservesTheEnergyOfAVibrationAtBothSidesOfTheEdge)
     motion.steps(20000);
     return std::fabs(energy() / before - 1.0);
   };
-  const double low = 0.5 * ChoiceOfValues::EDGE_OF_NINE, high = 2.6 * ChoiceOfValues::EDGE_OF_NINE;
+  const double low = 0.5 * Choice::EDGE_OF_NINE, high = 2.6 * Choice::EDGE_OF_NINE;
   EXPECT_LT(drift(9, low), drift(5, low));
   EXPECT_FALSE(drift(9, high) <= drift(5, high));    // nine values are unstable: not a number
 }

@@ -1,8 +1,8 @@
-/* gear_quat_limits.h: motions beyond the limits, and non-finite ones. */
+/* gear_quat_stability.h: motions beyond the limits, and non-finite ones. */
 
 #include "checks.h"
 #include "drive.h"
-#include "gear_quat_limits.h"
+#include "gear_quat_stability.h"
 
 #include <limits>
 #include <string>

@@ -14,7 +14,7 @@ namespace {
 Scheme momentum(int values, bool tuned = true)
 {
   Scheme scheme = scheme_of(Formulation::MOMENTUM, values, 0, true);
-  scheme.tuned = tuned;
+  scheme.method = tuned ? Method::TUNED : Method::GEAR;
   return scheme;
 }
 

@@ -38,7 +38,7 @@ Collocation::Workspace nodes_of(const vector<double> &a, int pairs, int inner)
   Collocation::Workspace w = {};
   w.pairs = inner;
   for (int k = -inner; k <= inner; ++k)
-    for (double &x : w.rate[pairs + k]) x = polynomial(a, k);
+    for (auto &row : w.rate) row[pairs + k] = polynomial(a, k);
   return w;
 }
 
@@ -101,7 +101,8 @@ TEST(StartupNodes, ForetellingIsExactForWhatTheInnerNodesHold)
         EXPECT_EQ(w.pairs, inner + 1);
         double largest = 0.0;
         for (int k = -inner - 1; k <= inner + 1; ++k)
-          for (double found : w.rate[pairs + k]) {
+          for (const auto &row : w.rate) {
+            const double found = row[pairs + k];
             const double exact = polynomial(truth, k);
             largest = std::max(largest, std::fabs(found - exact) / (1.0 + std::fabs(exact)));
           }
@@ -123,7 +124,7 @@ TEST(StartupNodes, FewerPairsAreAPolynomialOfLowerDegree)
   const vector<double> a = of_degree(4, 4);
   Collocation::Workspace w = nodes_of(a, 4, 2);
   for (int k : {-4, -3, 3, 4})
-    for (double &x : w.rate[4 + k]) x = 1e3;
+    for (auto &row : w.rate) row[4 + k] = 1e3;
   const TaylorSeries series = collocation.series(w, 2);
   ASSERT_EQ(series.terms, 7);
   for (int j = 0; j <= 4; ++j) EXPECT_NEAR(series.c[j + 2][0], a[j] / ((j + 1) * (j + 2)), 1e-15);
@@ -159,7 +160,7 @@ TEST(StartupNodes, ChangeIsRelativeToTheMotion)
     w.pairs = 1;
     w.body = point;
     w.start[1][0] = H * velocity;
-    w.rate[collocation.pairs() + 1][0] = before;
+    w.rate[0][collocation.pairs() + 1] = before;
     return collocation.set_load(1, point, s, Load{{force, 0, 0}, {0, 0, 0}}, H, length, w);
   };
   // H^2 F/m = 0.125 F

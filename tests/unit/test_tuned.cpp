@@ -1,8 +1,8 @@
-/* gear_quat_coefficients.h and gear_quat_limits.h: the order conditions, compared with the characteristic
+/* gear_quat_coefficients.h and gear_quat_stability.h: the order conditions, compared with the characteristic
    equation in exact fractions; every tuned set, for any numbers; and its response to random
    forces. */
 
-#include "gear_quat_limits.h"
+#include "gear_quat_stability.h"
 #include "oracles/characteristic.h"
 #include "oracles/exact_flow.h"
 #include "oracles/rational.h"
@@ -171,7 +171,7 @@ TEST(TunedSets, NoneMeansAnError)
   EXPECT_THROW(Integrator(scheme_of(MOMENTUM, MAX_VALUES + 1), 0.1), std::domain_error);
   for (const Formulation formulation : {FIRST, SECOND}) {
     Scheme scheme = scheme_of(formulation, 6);
-    scheme.tuned = true;
+    scheme.method = Method::TUNED;
     EXPECT_THROW(Integrator(scheme, 0.1), std::domain_error);
   }
 }

@@ -3,7 +3,6 @@
    Every function takes a Corrector and returns LOST if its motion does not stay finite. */
 
 #include "drive.h"
-#include "gear_quat_limits.h"
 #include "oracles/cage_scene.h"
 
 #include <random>
@@ -24,7 +23,7 @@ struct Corrector {
 Scheme scheme_for(const Corrector &corrector)
 {
   Scheme scheme = scheme_of(MOMENTUM, corrector.values, 1, corrector.compensate);
-  scheme.tuned = false;
+  scheme.method = Method::GEAR;
   return scheme;
 }
 

@@ -1,0 +1,147 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_stability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace GearQuat;
+
+BodyState GearQuat::kicked(const RigidBody &body, const BodyState &before, const Load &load,
+                           double h)
+{
+  BodyState s = before;
+  double omegadot_body[3];
+  angular_acceleration(body, before, dot4(s.q, s.q), load, omegadot_body);
+  for (int k = 0; k < 3; ++k) {
+    s.velocity[k] += h * load.force[k] / body.mass;
+    s.omega_body[k] += h * omegadot_body[k];
+  }
+  return s;
+}
+
+double GearQuat::fastest_oscillation(const Scheme &scheme)
+{
+  constexpr int FEWEST = 3;    // values of the first column
+  constexpr double FASTEST[][MAX_VALUES - FEWEST + 1] = {
+      {2.0, 1.40, 0.36, 0.42, 0.62, 0.46, 0.32, 0.24, 0.16, 0.12},     // Gear's
+      {0.0, 0.24, 0.32, 0.44, 0.60, 0.44, 0.32, 0.22, 0.16, 0.12},     // with c0 of velocities
+      {1.00, 0.92, 0.28, 0.34, 0.24, 0.12},                            // first formulation
+      {0.72, 0.42, 0.22, 0.10, 0.04, 0.02},                            // with predicted momentum
+      {2.00, 1.04, 0.96, 0.54, 0.70, 0.66, 0.60, 0.56, 0.60, 0.50},    // tuned
+  };
+  const int row = scheme.tuned()
+      ? 4
+      : 2 * scheme.first() + (scheme.first() ? scheme.predicted_momentum : scheme.velocity_c0);
+  return FASTEST[row][scheme.values() - FEWEST];
+}
+
+/// whole: std::floor or std::ceil; nearly: a little more or less than 1.
+static double two_digits(double number, double (*whole)(double), double nearly)
+{
+  if (!std::isfinite(number) || number <= 0.0) return number;
+  const double unit = std::pow(10.0, std::floor(std::log10(number)) - 1.0);
+  return whole(number / unit * nearly) * unit;
+}
+
+double GearQuat::rounded_down(double number)
+{
+  return two_digits(number, std::floor, 1.0 + 1.0e-12);
+}
+
+double GearQuat::rounded_up(double number)
+{
+  return two_digits(number, std::ceil, 1.0 - 1.0e-12);
+}
+
+/* ----------------------------------------------------------------------
+   the fast edge
+------------------------------------------------------------------------- */
+
+void MotionSums::add(const RigidBody &body, const BodyState &state, const TaylorSeries &series,
+                     double step)
+{
+  constexpr int LEVELS = 4;    // derivatives, from the second on
+  const int known = std::min(series.terms - 2, LEVELS);
+  if (known <= 2) return;
+  const double *inertia = body.inertia;
+  const int freedoms = std::max(1, body.rotational_freedoms());
+  const double mean = (inertia[0] + inertia[1] + inertia[2]) / freedoms;
+  double axes[9], per_inertia[3], size[LEVELS] = {};    // squares of step^k y^(k)
+  rotation_matrix(state.q, dot4(state.q, state.q), axes);
+  inverse_moments(body, per_inertia);
+  double factorial = 1.0;
+  for (int k = 0; k < known; ++k) {
+    factorial *= k + 2;
+    const double *x = series.c[k + 2], *rate = series.momentum[k + 1];
+    double along[3], all = body.mass * dot3(x, x);
+    to_body(axes, rate, along);
+    for (int i = 0; i < 3; ++i) along[i] *= per_inertia[i] / (k + 2);
+    all += mean * dot3(along, along);
+    size[k] = factorial * factorial * all;
+  }
+  const double per_step4 = 1.0 / (step * step * step * step);    // in units of y''
+  sums[0] += per_step4 * per_step4 * (size[2] + size[3]);
+  sums[1] += per_step4 * (size[0] + size[1]);
+  sums[4] += body.mass * dot3(state.velocity, state.velocity);
+  for (int k = 0; k < 3; ++k) sums[4] += inertia[k] * state.omega_body[k] * state.omega_body[k];
+}
+
+void MotionSums::add(const RigidBody &body, const BodyState &state, const double *torque_body)
+{
+  for (int k = 0; k < 3; ++k) {
+    if (!(body.inertia[k] > 0.0)) continue;
+    sums[2] += torque_body[k] * torque_body[k] / body.inertia[k];
+    sums[3] += body.inertia[k] * state.omega_body[k] * state.omega_body[k];
+  }
+}
+
+double MotionSums::fast_edge(double h) const
+{
+  const double size = std::fabs(h);
+  if (knows_derivatives(h)) return size * std::pow(sums[0] / sums[1], 0.25);
+  if (sums[3] > 0.0) return EDGE_BY_MEAN * size * std::sqrt(sums[2] / sums[3]);
+  return sums[2] > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+}
+
+bool MotionSums::knows_derivatives(double h) const
+{
+  // a smaller change of velocities in a step is from rounding: the forces between atoms of a body
+  // cancel only up to rounding
+  constexpr double LEAST_CHANGE = 1.0e-10;
+  return sums[1] > 0.0 && h * h * sums[1] > LEAST_CHANGE * LEAST_CHANGE * sums[4];
+}
+
+/* ----------------------------------------------------------------------
+   the number of values
+------------------------------------------------------------------------- */
+
+bool GearQuat::suits_noise(const Scheme &scheme, Noise noise)
+{
+  if (noise == Noise::NONE || scheme.is_verlet()) return true;
+  if (noise == Noise::RANDOM && !scheme.first()) return false;
+  return !scheme.tuned() && scheme.values() <= (scheme.first() ? 3 : 4);
+}
+
+Choice::Choice(const Scheme &given, double edge, Noise noise, bool stated, int present) :
+    scheme(given), reason(FORMULATION)
+{
+  if (given.tuned()) {
+    const double band = present == 9 ? BAND : present == 5 ? 1.0 / BAND : 1.0;
+    scheme.rows = edge <= band * EDGE_OF_NINE ? 9 : 5;
+    reason = MOTION;
+  }
+  if (suits_noise(scheme, noise)) return;
+  reason = NOISE;
+  if (noise == Noise::RANDOM && !given.first()) {
+    scheme.rows = VERLET;
+  } else {
+    if (!stated) scheme.method = Method::GEAR;
+    scheme.rows = given.first() ? FIRST_FEWEST : SECOND_FEWEST;
+  }
+}
