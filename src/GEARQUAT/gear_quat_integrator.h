@@ -36,8 +36,6 @@
 #include "gear_quat_history.h"
 #include "gear_quat_turn.h"
 
-#include <type_traits>
-
 namespace LAMMPS_NS::GearQuat {
 
 /// Replaces Friction where there is none.
@@ -114,11 +112,7 @@ class Integrator : public Kinematics {
       return correct_momenta(body, load, axes, total, rows);
     }
     Pending pending = begin(load, axes, rows);
-    if (scheme.first())    // for constant forces once is sufficient
-      with_history([&](auto history) {
-        correct_center(history, body, load, Undamped(), rows, pending.total.x);
-      });
-    for (int k = scheme.passes; k > 0; --k) correct_pass(body, load, Undamped(), rows, pending);
+    for (int k = 0; k < scheme.passes; ++k) correct_pass(body, load, Undamped(), rows, pending, k);
     return finish(body, load, rows, pending);
   }
   Correction correct(const RigidBody &body, const Load &load, double *rows) const
@@ -149,13 +143,13 @@ class Integrator : public Kinematics {
     return pending;
   }
 
-  /// Damper: Friction, or a class with the same functions.
+  /// Damper: Friction, or a class with the same functions.  earlier: passes without friction.
   template <class Damper>
   void correct_pass(const RigidBody &body, const Load &load, const Damper &friction, double *rows,
-                    Pending &pending) const
+                    Pending &pending, int earlier = 0) const
   {
     with_history([&](auto history) {
-      pass(history, body, load, friction, rows, pending);
+      pass(history, body, load, friction, rows, pending, earlier);
     });
   }
 
@@ -358,9 +352,9 @@ class Integrator : public Kinematics {
 
   template <int CARRIES, class Damper>
   void pass(First<CARRIES> history, const RigidBody &body, const Load &load, const Damper &friction,
-            double *rows, Pending &pending) const
+            double *rows, Pending &pending, int earlier) const
   {
-    if (!std::is_same_v<Damper, Undamped>)
+    if (earlier == 0)    // with constant forces once is sufficient
       correct_center(history, body, load, friction, rows, pending.total.x);
     correct_rotation(history, body, pending.torque_body, friction, rows, pending.total.q);
   }
@@ -436,24 +430,27 @@ class Integrator : public Kinematics {
   Correction correct_momenta(const RigidBody &body, const Load &load, const double *axes,
                              const Residual &total, double *rows) const
   {
-    const auto correct = [&](auto history) -> Correction {
-      double angle[3], change[4], torque_body[3];
-      const double *c = corrector.c.data();
-      const double error2 = small_rotation(body, axes, rows, total.q, angle);
-      history.template correct<3>(rows, n, c, Scheme::POSITION, total.x);
-      history.template correct<3, 1>(rows, n, c, Scheme::ANGULAR_MOMENTUM, total.q);
-      small_turn(rows + Scheme::SECOND_QUATERNION, angle, change);
-      history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
-      to_body(axes, load.torque_space, torque_body);
-      return {c[0] * dot3(load.force, total.x) + dot3(torque_body, angle),
-              corrector.weight2 * dot3(total.x, total.x), 0.25 * corrector.weight2 * error2};
-    };
-    return scheme.compensate ? correct(Momenta<2>()) : correct(Momenta<0>());
+    return scheme.compensate ? correct_momenta(Momenta<2>(), body, load, axes, total, rows)
+                             : correct_momenta(Momenta<0>(), body, load, axes, total, rows);
+  }
+  template <int CARRIES>
+  Correction correct_momenta(Momenta<CARRIES> history, const RigidBody &body, const Load &load,
+                             const double *axes, const Residual &total, double *rows) const
+  {
+    double angle[3], change[4], torque_body[3];
+    const double error2 = small_rotation(body, axes, rows, total.q, angle);
+    history.template correct<3>(rows, n, corrector.c.data(), Scheme::POSITION, total.x);
+    history.template correct<3, 1>(rows, n, corrector.c.data(), Scheme::ANGULAR_MOMENTUM, total.q);
+    small_turn(rows + Scheme::SECOND_QUATERNION, angle, change);
+    history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
+    to_body(axes, load.torque_space, torque_body);
+    return {corrector.c[0] * dot3(load.force, total.x) + dot3(torque_body, angle),
+            corrector.weight2 * dot3(total.x, total.x), 0.25 * corrector.weight2 * error2};
   }
 
   template <int CARRIES, class Damper>
   void pass(Momenta<CARRIES>, const RigidBody &body, const Load &load, const Damper &friction,
-            double *rows, Pending &pending) const
+            double *rows, Pending &pending, int) const
   {
     const double *rates = rows + Scheme::SECOND_WIDTH;
     double damped[3], momentum[3];
@@ -543,7 +540,7 @@ class Integrator : public Kinematics {
   /// Computes only residuals: rows stay predicted until finish_passes().
   template <int CARRIES, class Damper>
   void pass(Second<CARRIES>, const RigidBody &body, const Load &load, const Damper &friction,
-            double *rows, Pending &pending) const
+            double *rows, Pending &pending, int) const
   {
     double before[4], *total = pending.total.q;
     pass_of_center(body, load, friction, rows, pending.total.x);

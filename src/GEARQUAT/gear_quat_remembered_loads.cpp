@@ -12,15 +12,54 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-/// The integral of a polynomial.
-template <class P> static double integral(const P &p, int terms, double from, double to)
-{
-  double a = 0.0, b = 0.0;
-  for (int j = terms - 1; j >= 0; --j) {
-    a = a * from + p[j] / (j + 1);
-    b = b * to + p[j] / (j + 1);
+/// The product of (s - s_j)/(1 - s_j) over the times s_j of the latest loads, where s is the time
+/// since the last load in units of h: 1 at the new load.
+struct Nodal {
+  using Array = std::array<double, MOST_LOADS + 4>;
+  int terms = 1;
+  Array c = {1.0};
+  double scale = 1.0;    ///< product of 1 - s_j
+
+  template <class Ages> Nodal(const Ages &ages, int count, double h)
+  {
+    for (int k = 0; k < count; ++k, ++terms) {
+      const double back = ages[std::min(k, MOST_LOADS)] / std::fabs(h), way = 1.0 + back;
+      for (int j = terms; j > 0; --j) c[j] = (c[j - 1] + back * c[j]) / way;
+      c[0] *= back / way;
+      scale *= way;
+    }
   }
-  return b * to - a * from;
+
+  /// The integral, weighted by a power of the time until the end of the step.
+  double integral(int power, double from, double to) const
+  {
+    Array p = c;
+    for (int k = 1; k <= power; ++k)
+      for (int j = terms + k - 1; j > 0; --j) p[j] -= p[j - 1];
+    double a = 0.0, b = 0.0;
+    for (int j = terms + power - 1; j >= 0; --j) {
+      a = a * from + p[j] / (j + 1);
+      b = b * to + p[j] / (j + 1);
+    }
+    return b * to - a * from;
+  }
+
+  /// The coefficients about s.
+  Array about(double s) const
+  {
+    Array p = c;
+    for (int i = 0; i + 1 < terms; ++i)
+      for (int j = terms - 2; j >= i; --j) p[j] += s * p[j + 1];
+    return p;
+  }
+};
+
+/// The displacement of the outermost part of a body in a row.
+static double size_of(const RigidBody &body, double reach, const double *axes, const double *row)
+{
+  double turn[3];
+  Integrator::turn_of(body, axes, row + Scheme::ANGULAR_MOMENTUM, turn);
+  return std::max(length(row), reach * length(turn));
 }
 
 void RememberedLoads::begin(int loads, double interval)
@@ -35,24 +74,25 @@ void RememberedLoads::prepare(double h)
   const int n = values();
   const Nodal all(ages, k, h), fewer(ages, k - 1, h), more(ages, k + 1, h);
   corrector = CorrectorCoefficients();
-  corrector.c[0] = 2.0 * all.twice(0.0, 1.0);
-  corrector.c[1] = 2.0 * all.once(0.0, 1.0);
+  corrector.c[0] = 2.0 * all.integral(1, 0.0, 1.0);
+  corrector.c[1] = 2.0 * all.integral(0, 0.0, 1.0);
   corrector.weight2 = corrector.c[0] * corrector.c[0];
-  corrector.moment = -all.thrice(0.0, 1.0);
+  corrector.moment = -all.integral(2, 0.0, 1.0);
   const auto next = fewer.about(1.0);    // the new load replaces the oldest one
   for (int j = 2; j < n; ++j) corrector.c[j] = 2.0 * next[j - 2] / (j * (j - 1));
 
   const double from_trial = n * (n - 1) * all.scale, from_dropped = (n + 1) * n * more.scale;
   to_trial = 2.0 / from_trial;
-  of_fewer = (n - 1) * (n - 2) * fewer.scale * fewer.once(0.0, 1.0);
-  of_more = k < known && compares ? from_trial * more.once(0.0, 1.0) : 0.0;
+  of_fewer = (n - 1) * (n - 2) * fewer.scale * fewer.integral(0, 0.0, 1.0);
+  of_more = k < known && compares ? from_trial * more.integral(0, 0.0, 1.0) : 0.0;
   int steps = 0;
   while (steps < std::min({LAG, (k - 2) / 2, known - 1}) &&
          ages[steps + 1] - ages[steps] < LONGER * std::fabs(h))
     ++steps;
   const double back = steps > 0 ? -ages[steps] / std::fabs(h) : 0.0;
-  lag = {from_trial * all.twice(back, 0.0), from_trial * all.once(back, 0.0)};
-  lag_of_dropped = {from_dropped * more.twice(back, 0.0), from_dropped * more.once(back, 0.0)};
+  lag = {from_trial * all.integral(1, back, 0.0), from_trial * all.integral(0, back, 0.0)};
+  lag_of_dropped = {from_dropped * more.integral(1, back, 0.0),
+                    from_dropped * more.integral(0, back, 0.0)};
   if (k >= known) lag_of_dropped = {};
 }
 
@@ -104,7 +144,7 @@ StepErrors RememberedLoads::errors(const StepControl &control, const Integrator 
 {
   double *trial = trial_of(rows), turn[3];
   const auto size = [&](const double *row) {
-    return RememberedLoads::size(body, reach, axes, row);
+    return size_of(body, reach, axes, row);
   };
   const double *now = rows + 2 * Scheme::SECOND_WIDTH;
   Row residual;
@@ -193,46 +233,6 @@ double StepControl::first_step(double jerk, double speed, double mass) const
   const double rest = std::sqrt(2.0 * eps / mass);    // change of velocity with the energy eps,
                                                       // from rest
   return std::sqrt(2.0 / jerk * std::min(rest, speed > 0.0 ? eps / (mass * speed) : rest));
-}
-
-RememberedLoads::Nodal::Nodal(const Ages &ages, int count, double h)
-{
-  for (int k = 0; k < count; ++k, ++terms) {
-    const double back = ages[std::min(k, MOST_LOADS)] / std::fabs(h), way = 1.0 + back;
-    for (int j = terms; j > 0; --j) c[j] = (c[j - 1] + back * c[j]) / way;
-    c[0] *= back / way;
-    scale *= way;
-  }
-}
-
-RememberedLoads::Nodal::Array RememberedLoads::Nodal::about(double s) const
-{
-  Array p = c;
-  for (int i = 0; i + 1 < terms; ++i)
-    for (int j = terms - 2; j >= i; --j) p[j] += s * p[j + 1];
-  return p;
-}
-
-double RememberedLoads::Nodal::once(double from, double to) const
-{
-  return integral(c, terms, from, to);
-}
-
-double RememberedLoads::Nodal::weighted(int times, double from, double to) const
-{
-  std::array<double, MOST_LOADS + 4> p = {};
-  std::copy_n(c.begin(), terms, p.begin());
-  for (int k = 1; k <= times; ++k)
-    for (int j = terms + k - 1; j > 0; --j) p[j] -= p[j - 1];
-  return integral(p, terms + times, from, to);
-}
-
-double RememberedLoads::size(const RigidBody &body, double reach, const double *axes,
-                             const double *row)
-{
-  double turn[3];
-  Integrator::turn_of(body, axes, row + Scheme::ANGULAR_MOMENTUM, turn);
-  return std::max(GearQuat::length(row), reach * GearQuat::length(turn));
 }
 
 double GearQuat::even_step(double step, double way)

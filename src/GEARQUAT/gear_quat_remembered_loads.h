@@ -138,32 +138,10 @@ class RememberedLoads {
   double to_trial = 0.0, of_fewer = 0.0, of_more = 0.0;
   std::array<double, 2> lag = {}, lag_of_dropped = {};    ///< of places, of rates
 
-  /// The product of (s - s_j)/(1 - s_j) over the times s_j of the latest loads, where s is the time
-  /// since the last load in units of h: 1 at the new load.
-  struct Nodal {
-    using Array = std::array<double, MOST_LOADS + 2>;
-    int terms = 1;
-    Array c = {1.0};
-    double scale = 1.0;    ///< product of 1 - s_j
-
-    Nodal(const Ages &ages, int count, double h);
-    double once(double from, double to) const;
-    /// Weighted by the time until the end of the step, or by its square.
-    double twice(double from, double to) const { return weighted(1, from, to); }
-    double thrice(double from, double to) const { return weighted(2, from, to); }
-    Array about(double s) const;
-
-   private:
-    double weighted(int times, double from, double to) const;
-  };
-
   double *trial_of(double *rows) const
   {
     return rows + (values() + carries) * Scheme::SECOND_WIDTH;
   }
-
-  /// The displacement of the outermost part of a body in a row.
-  static double size(const RigidBody &body, double reach, const double *axes, const double *row);
 };
 
 /// What limits the growth of the next step.  START: the number of loads increases in every step;
