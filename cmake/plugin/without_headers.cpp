@@ -47,7 +47,7 @@ std::vector<double> RespaForces::steps(LAMMPS *lmp)
   return std::vector<double>(first, first + *levels);
 }
 
-std::vector<StatedMolecule> GearQuat::read_stated(LAMMPS *lmp, const std::string &template_id)
+std::map<int, StatedMolecule> GearQuat::read_stated(LAMMPS *lmp, const std::string &template_id)
 {
   if (!template_id.empty() && lmp->comm->me == 0)
     lmp->error->warning(

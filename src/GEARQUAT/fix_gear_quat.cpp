@@ -88,7 +88,6 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   warn_of_gaps(lmp, ownership);
   warn_of_shapes(lmp, bodies, ownership);
   step.meet_bodies();
-  atoms_are_free = over_ranks(MPI_MAX, (int) ownership.had_free_atoms(), world);
   count_rows();
   size_array_rows_variable = !args.mol.empty();    // rows may be requested before they exist
 
@@ -104,7 +103,8 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
 
 void FixGearQuat::create_bodies()
 {
-  ownership.create(args.body_ids(groupbit), read_given_bodies(lmp, args.infile));
+  const int free = ownership.create(args.body_ids(groupbit), read_given_bodies(lmp, args.infile));
+  atoms_are_free = over_ranks(MPI_MAX, free, world);
 }
 
 FixGearQuat::~FixGearQuat()
@@ -179,7 +179,7 @@ void FixGearQuat::setup_pre_neighbor()
   driven_box.follow_images();
   const bool defined = step.phase == Phase::DEFINED;
   if (!defined && !is_minimized()) step.take_velocities(update->ntimestep, false);
-  const bool takes_over = args.infile.empty() && !any_differs(stated) && (args.reinit || defined);
+  const bool takes_over = args.infile.empty() && stated.empty() && (args.reinit || defined);
   if (takes_over && sites.any_changes()) {
     sites.refuse_tears();
     sites.take_out_flow();
@@ -309,7 +309,13 @@ void FixGearQuat::min_setup(int vflag)
   min_post_force(vflag);
   minimization.begin();
   minimization.project(atom->f);
-  min_projected = true;
+  min_vflag = PROJECTED;
+}
+
+void FixGearQuat::min_pre_force(int /*vflag*/)
+{
+  minimization.fit();
+  comm->forward_comm();
 }
 
 /// Fix box/relax may request the pressure next.
@@ -325,11 +331,10 @@ void FixGearQuat::min_post_force(int vflag)
 double FixGearQuat::min_energy(double *fextra)
 {
   fextra[0] = 0.0;
-  if (min_projected)
+  if (min_vflag == PROJECTED)
     sites.gather_loads(atom->f, nullptr);    // with the torques of atoms
   else
     min_post_force(min_vflag);
-  min_projected = false;
   minimization.project(atom->f);
   return 0.0;
 }
@@ -445,8 +450,8 @@ void FixGearQuat::set_molecule(int first, tagint /*before*/, int which, double *
   const tagint molecule = over_ranks(MPI_MIN, smallest, world);
 
   GivenBodies given;
-  if (which >= 0 && which < (int) stated.size() && stated[which].differs)
-    given[molecule] = given_at(stated[which], {center, velocity, quat});
+  if (const auto one = stated.find(which); one != stated.end())
+    given[molecule] = given_at(one->second, center, velocity, quat);
   std::vector<tagint> ids(atom->nlocal, 0);
   std::fill(ids.begin() + first, ids.end(), molecule);
   ownership.add(ids, given, true);

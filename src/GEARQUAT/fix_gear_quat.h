@@ -31,7 +31,7 @@ FixStyle(gear/quat,FixGearQuat);
 #include "gear_quat_step.h"
 
 #include <cmath>
-#include <vector>
+#include <map>
 
 namespace LAMMPS_NS {
 
@@ -60,7 +60,7 @@ class FixGearQuat : public Fix {
   void min_setup(int) override;
   void min_pre_exchange() override { minimization.fit(); }
   void min_pre_neighbor() override { pre_neighbor(); }
-  void min_pre_force(int) override { minimization.fit_all(); }
+  void min_pre_force(int) override;
   void min_post_force(int) override;
   double min_energy(double *) override;
   void min_store() override { minimization.store(); }
@@ -126,7 +126,7 @@ class FixGearQuat : public Fix {
   GearQuat::RespaForces respa;
   GearQuat::Outputs outputs;
 
-  std::vector<GearQuat::StatedMolecule> stated;    // one for each molecule of the template
+  std::map<int, GearQuat::StatedMolecule> stated;    ///< of molecules of the template, by numbers
 
   GearQuat::Fields file;            ///< the numbers of a restart file that were not read yet
   int place = 0;                    ///< number of other fixes whose data of an atom precede in it
@@ -134,8 +134,8 @@ class FixGearQuat : public Fix {
 
   int told_of_groups = 0;         ///< their bits: a warning about parts of bodies was given
   bool atoms_are_free = false;    // their velocities are not yet those of bodies
-  bool min_projected = false;     // forces were projected before a minimization begins
-  int min_vflag = 0;              // vflag of the current evaluation in a minimization
+  static constexpr int PROJECTED = -1;
+  int min_vflag = 0;    // vflag of the current evaluation in a minimization; or forces were projected
 
   bool is_minimized() const;
   void create_bodies();

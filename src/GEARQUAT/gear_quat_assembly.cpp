@@ -136,10 +136,17 @@ double Assembly::radius(int part) const
   return 0.5 * std::sqrt(distance2(extremes[part].lo, extremes[part].hi));
 }
 
-/// The scale of a sum over all sites of a body; bound: of its terms.
-double Assembly::scale_of(int part, double bound) const
+/// The scales of sums over all sites of a body, from bounds of the terms: no arm is longer than twice
+/// the radius.
+Assembly::Scales Assembly::scales(int part) const
 {
-  return ExactSum::scale_of(bound * std::max(1.0, (double) sizes[part].natoms / MANY));
+  const Sizes &size = sizes[part];
+  const double r = extremes.empty() ? 0.0 : radius(part), mass = size.mass;
+  const auto of = [&size](double bound) {
+    return ExactSum::scale_of(bound * std::max(1.0, (double) size.natoms / MANY));
+  };
+  return {of(mass), of(mass * r), of(mass * size.speed), of(mass * 4.0 * r * r + size.own_inertia),
+          of(mass * 8.0 * r * size.speed + size.own_momentum)};
 }
 
 /* ----------------------------------------------------------------------
@@ -209,7 +216,7 @@ void Assembly::find_extremes()
 {
   const Extremes none = {{NONE, NONE, NONE}, {-NONE, -NONE, -NONE}, ExactSum()};
   extremes = over_sites(none, [this](Extremes &all, int part) {
-    const double unit = scale_of(part, sizes[part].mass);
+    const double unit = scales(part).mass;
     visit(part, [&](const Site &site) {
       for (int k = 0; k < 3; ++k) {
         all.lo[k] = std::min(all.lo[k], site.x[k]);
@@ -221,7 +228,7 @@ void Assembly::find_extremes()
   for (int part = 0; part < parts.number(); ++part) {
     Body &body = made[part].body;
     body.natoms = (tagint) sizes[part].natoms;
-    body.rigid.mass = extremes[part].mass.value(scale_of(part, sizes[part].mass));
+    body.rigid.mass = extremes[part].mass.value(scales(part).mass);
     if (!body.from_file && !(body.rigid.mass > 0.0)) faulty[MASSLESS] = body.id;
   }
 }
@@ -230,13 +237,8 @@ void Assembly::find_extremes()
 void Assembly::find_moments()
 {
   const Moments none = {NONE, MAXTAGINT, 0, 0, {}, {}, {}};
-  const auto units = [this](int part) {
-    const double mass = sizes[part].mass;
-    return std::array<double, 2>{scale_of(part, mass * radius(part)),
-                                 scale_of(part, mass * sizes[part].speed)};
-  };
   moments = over_sites(none, [&](Moments &all, int part) {
-    const auto unit = units(part);
+    const Scales scale = scales(part);
     const auto center = middle(part);
     visit(part, [&](const Site &site) {
       const double d2 = distance2(site.x, center.data());
@@ -248,22 +250,22 @@ void Assembly::find_moments()
         std::copy_n(site.x, 3, all.x);
       }
       for (int k = 0; k < 3; ++k) {
-        all.center[k].add(site.mass * (site.x[k] - center[k]), unit[0]);
-        all.momentum[k].add(site.mass * site.v[k], unit[1]);
+        all.center[k].add(site.mass * (site.x[k] - center[k]), scale.center);
+        all.momentum[k].add(site.mass * site.v[k], scale.momentum);
       }
     });
   });
   for (int part = 0; part < parts.number(); ++part) {
     Made &one = made[part];
-    const auto unit = units(part);
+    const Scales scale = scales(part);
     const auto from = middle(part);
     const double mass = one.body.rigid.mass;
     one.owner = moments[part].owner;
     one.owner_rank = moments[part].rank;
     one.local = moments[part].local;
     for (int k = 0; k < 3; ++k) {
-      one.state.center[k] = from[k] + moments[part].center[k].value(unit[0]) / mass;
-      one.state.velocity[k] = moments[part].momentum[k].value(unit[1]) / mass;
+      one.state.center[k] = from[k] + moments[part].center[k].value(scale.center) / mass;
+      one.state.velocity[k] = moments[part].momentum[k].value(scale.momentum) / mass;
     }
     if (sizes[part].natoms == 1)    // without rounding
       std::copy_n(atom->v[parts.atoms(part).first[0]], 3, one.state.velocity);
@@ -271,19 +273,11 @@ void Assembly::find_moments()
   }
 }
 
-/// Bounds of the terms: no arm is longer than twice the radius.
-Assembly::MomentaUnits Assembly::units_of_momenta(int part) const
-{
-  const double r = radius(part), mass = sizes[part].mass;
-  return {scale_of(part, mass * 4.0 * r * r + sizes[part].own_inertia),
-          scale_of(part, mass * 8.0 * r * sizes[part].speed + sizes[part].own_momentum)};
-}
-
 std::vector<Assembly::Momenta> Assembly::find_momenta()
 {
   const Momenta none = {0.0, NONE, {}, {}};
   return over_sites(none, [this](Momenta &all, int part) {
-    const MomentaUnits unit = units_of_momenta(part);
+    const Scales scale = scales(part);
     const BodyState &state = made[part].state;
     const bool counts = !made[part].body.from_file;
     visit(part, [&](const Site &site) {
@@ -297,12 +291,13 @@ std::vector<Assembly::Momenta> Assembly::find_momenta()
       if (!counts) return;
       if (extended) extended->own_momenta(site.local, site.mass, own_inertia, own_momentum);
       for (int k = 0; k < 3; ++k)
-        all.angular_momentum_space[k].add(own_momentum[k] + site.mass * spin[k], unit.momentum);
+        all.angular_momentum_space[k].add(own_momentum[k] + site.mass * spin[k],
+                                          scale.angular_momentum);
       for (int m = 0; m < 6; ++m) {
         const int k = ROW[m], l = COLUMN[m];
         all.inertia_space[m].add(own_inertia[3 * k + l] +
                                      site.mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]),
-                                 unit.inertia);
+                                 scale.inertia);
       }
     });
   });
@@ -339,10 +334,10 @@ static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: on neither s
 void Assembly::find_axes(int part, const Momenta &momenta)
 {
   double tensor[9];
-  const MomentaUnits unit = units_of_momenta(part);
+  const Scales scale = scales(part);
   for (int m = 0; m < 6; ++m)
     tensor[3 * ROW[m] + COLUMN[m]] = tensor[3 * COLUMN[m] + ROW[m]] =
-        momenta.inertia_space[m].value(unit.inertia);
+        momenta.inertia_space[m].value(scale.inertia);
   Made &one = made[part];
   if (one.body.from_file) {
     const double *i = given.at(one.body.id).inertia;
@@ -363,11 +358,12 @@ void Assembly::find_rotation(int part, const Momenta &momenta)
 {
   Made &one = made[part];
   const double *moments = one.body.rigid.inertia;
-  const MomentaUnits unit = units_of_momenta(part);
+  const Scales scale = scales(part);
   double momentum_space[3], momentum_body[3];
   for (int k = 0; k < 3; ++k)
-    momentum_space[k] = one.body.from_file ? given.at(one.body.id).angular_momentum_space[k]
-                                           : momenta.angular_momentum_space[k].value(unit.momentum);
+    momentum_space[k] = one.body.from_file
+        ? given.at(one.body.id).angular_momentum_space[k]
+        : momenta.angular_momentum_space[k].value(scale.angular_momentum);
   quaternion_from_matrix(one.axes, one.state.q);
   to_body(one.axes, momentum_space, momentum_body);
   for (int k = 0; k < 3; ++k)
@@ -513,14 +509,12 @@ void Assembly::refuse_faults()
     if (any[fault] > 0) error->all(FLERR, FAULT_TEXTS[fault], any[fault]);
 }
 
-void Assembly::refuse_missing() const
+void Assembly::refuse_missing()
 {
-  if (over_ranks(MPI_SUM, (int) found.size(), world) == (int) given.size()) return;
-  for (const auto &stated : given) {
-    const int here = std::count(found.begin(), found.end(), stated.first) > 0;
-    if (!over_ranks(MPI_MAX, here, world))
+  const auto all = gather_sorted(found, world);
+  for (const auto &stated : given)
+    if (!std::binary_search(all.begin(), all.end(), stated.first))
       error->all(FLERR, "Fix gear/quat infile: no atom belongs to body {}", stated.first);
-  }
 }
 
 bool Assembly::Made::moves_apart(const double *v, const double *arm_body) const

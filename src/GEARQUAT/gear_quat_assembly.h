@@ -149,11 +149,10 @@ class Assembly : protected Pointers {
   }
   std::array<double, 3> middle(int part) const;
   double radius(int part) const;
-  double scale_of(int part, double bound) const;
-  struct MomentaUnits {
-    double inertia, momentum;
+  struct Scales {
+    double mass, center, momentum, inertia, angular_momentum;
   };
-  MomentaUnits units_of_momenta(int part) const;
+  Scales scales(int part) const;
   /// add: takes the sites of a part into its item.  Returns the items of whole bodies.
   template <class Item, class Add> std::vector<Item> over_sites(const Item &none, Add add) const
   {
@@ -176,7 +175,7 @@ class Assembly : protected Pointers {
   void check_place(int part, const Momenta &momenta);
   void check_moments(const Made &one);
   void refuse_faults();
-  void refuse_missing() const;
+  void refuse_missing();
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -36,10 +36,10 @@ static bool changes_box(const Fix *one)
 
 void DrivenBox::init()
 {
-  driven = false;
+  driver = nullptr;
   for (const auto *other : modify->get_fix_list()) {
     if (other == fix || !changes_box(other)) continue;
-    driven = true;
+    driver = other;
     if (!known(Fact::CARRIES_BODIES, other))
       error->all(FLERR,
                  "Fix gear/quat: fix {} ({}) changes the box without informing other fixes of "
@@ -57,7 +57,7 @@ void DrivenBox::init()
                  "of the number of the step; leave out keyword tolerance",
                  other->id, other->style);
   }
-  if (driven && domain->deform_vremap &&
+  if (driver && domain->deform_vremap &&
       (args.thermostat.damp > 0.0 || args.isokinetic != Isokinetic::NONE))
     error->all(FLERR,
                "Fix gear/quat: the velocities of bodies contain the flow of fix deform remap v, "
@@ -124,7 +124,7 @@ void DrivenBox::place_sites()
 void DrivenBox::follow()
 {
   const auto &box = ownership.box();
-  if (!driven || std::equal(domain->h, domain->h + 6, box.begin())) return;
+  if (!driver || std::equal(domain->h, domain->h + 6, box.begin())) return;
   double change[6], way[3];
   for (int k = 0; k < 6; ++k) change[k] = domain->h[k] - box[k];
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
@@ -159,7 +159,7 @@ void DrivenBox::pass_faces(int ibody, const double *images)
 /// Every rank changes the same body in the same way.
 void DrivenBox::follow_images()
 {
-  if (!driven) return;
+  if (!driver) return;
   std::vector<Load> found(bodies.nhere());    // images, and whether faces change the velocity
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
     const int owner = ownership.owner_of(ibody);
@@ -193,7 +193,7 @@ void DrivenBox::begin_setup()
       !(std::equal(domain->h, domain->h + 6, box.begin()) &&
         std::equal(domain->boxlo, domain->boxlo + 3, box.begin() + 6)))
     step.forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
-  if (!driven) return;
+  if (!driver) return;
   note_images();
   follow();
   if (!domain->deform_vremap) return;
@@ -211,7 +211,7 @@ void DrivenBox::begin_setup()
 
 void DrivenBox::end_run()
 {
-  if (!driven) return;
+  if (!driver) return;
   follow();
   place_sites();
 }

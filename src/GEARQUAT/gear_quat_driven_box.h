@@ -45,9 +45,9 @@ class DrivenBox : protected Pointers {
   /// Ends the run if another fix changes the box in a way that bodies cannot follow.  Before a run.
   void init();
   /// Called before a minimization, in which no other fix changes the box.
-  void rest() { driven = false; }
+  void rest() { driver = nullptr; }
   /// True if another fix changes the box in this run.
-  bool any() const { return driven; }
+  bool any() const { return driver; }
 
   /// Before and after another fix remaps atoms with the box.  Collective.
   void begin_remap() { ownership.note_box(); }
@@ -71,7 +71,7 @@ class DrivenBox : protected Pointers {
   Sites &sites;
   OtherFixes &others;
   Step &step;
-  bool driven = false;
+  const Fix *driver = nullptr;    ///< a fix that changes the box in this run
 
   void pass_faces(int ibody, const double *images);
   void refuse_jump() const;

@@ -202,10 +202,8 @@ bool Extended::any(const std::vector<int> &atoms) const
 
 void Extended::reset(bool keep, int nmax)
 {
-  kept = keep;
   sites.clear();
-  records.clear();
-  grow(nmax);
+  records.assign(keep ? nmax : 0, Record());
 }
 
 void Extended::own_momenta(int i, double mass, double *inertia_space,
@@ -236,7 +234,7 @@ void Extended::attach(int i, double mass, const double *q_body)
 
 int Extended::freedoms(int i) const
 {
-  if (!kept || records[i].moments[2] == 0.0) return 0;
+  if (!has_records() || records[i].moments[2] == 0.0) return 0;
   return domain->dimension == 2 ? 1 : 3;
 }
 
@@ -310,7 +308,7 @@ static bool same(const double *a, const double *b, int n)
 bool Extended::match(int i, double mass, const BodyState &state) const
 {
   const Own mine = own(i, mass);
-  const Record record = kept ? records[i] : Record();
+  const Record record = has_records() ? records[i] : Record();
   if (2 * mine.shape + mine.dipole != record.kind) return false;
   if (record.kind == 0.0) return true;
 
@@ -330,12 +328,12 @@ bool Extended::match(int i, double mass, const BodyState &state) const
 
 int Extended::pack(int i, double *buf) const
 {
-  if (kept) std::memcpy(buf, &records[i], sizeof(Record));
+  if (has_records()) std::memcpy(buf, &records[i], sizeof(Record));
   return packed_size();
 }
 
 int Extended::unpack(int i, const double *buf)
 {
-  if (kept) std::memcpy(&records[i], buf, sizeof(Record));
+  if (has_records()) std::memcpy(&records[i], buf, sizeof(Record));
   return packed_size();
 }

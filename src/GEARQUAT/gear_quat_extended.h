@@ -46,7 +46,7 @@ class Extended : protected Pointers {
   bool any(const std::vector<int> &atoms) const;
   /// Drop all records; keep: then allocate new records, one for each of nmax atoms.
   void reset(bool keep, int nmax);
-  bool has_records() const { return kept; }
+  bool has_records() const { return !records.empty(); }
   /// Contributions of the atom itself to its body's inertia tensor (row-major) and angular
   /// momentum.
   void own_momenta(int atom, double mass, double *inertia_space,
@@ -77,18 +77,18 @@ class Extended : protected Pointers {
 
   void grow(int nmax)
   {
-    if (kept) records.resize(nmax);
+    if (has_records()) records.resize(nmax);
   }
   void set(int atom)
   {
-    if (kept) records[atom] = Record();
+    if (has_records()) records[atom] = Record();
   }
   void copy(int from, int to)
   {
-    if (kept) records[to] = records[from];
+    if (has_records()) records[to] = records[from];
   }
   static constexpr int RECORD_SIZE = 11;    ///< doubles of a record
-  int packed_size() const { return kept ? RECORD_SIZE : 0; }
+  int packed_size() const { return has_records() ? RECORD_SIZE : 0; }
   int pack(int atom, double *buf) const;
   int unpack(int atom, const double *buf);
   double memory_usage() const
@@ -121,7 +121,6 @@ class Extended : protected Pointers {
   };
 
   Scheme scheme;
-  bool kept = false;
   std::vector<Record> records;
 
   AtomVecEllipsoid *ellipsoids = nullptr;    ///< components of the atom style

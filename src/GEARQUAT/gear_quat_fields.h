@@ -29,9 +29,9 @@ class Fields {
   /// To write.
   Fields() = default;
   /// To read.
-  explicit Fields(Numbers numbers) : all(std::move(numbers)), is_file(true) {}
+  explicit Fields(Numbers numbers) : all(std::move(numbers)), at(0) {}
 
-  bool reads() const { return is_file; }
+  bool reads() const { return at != WRITES; }
   const Numbers &numbers() const { return all; }
   /// True if all numbers have been read, and no more than these.
   bool is_complete() const { return at == all.size(); }
@@ -41,8 +41,8 @@ class Fields {
 
  private:
   Numbers all;
-  bool is_file = false;
-  size_t at = 0;
+  static constexpr size_t WRITES = -1;
+  size_t at = WRITES;    ///< the next number to read
 
   template <class T> void visit(T &member)
   {
@@ -53,7 +53,7 @@ class Fields {
   }
   template <class T> void number(T &member)
   {
-    if (!is_file)
+    if (!reads())
       all.push_back((double) member);
     else if (at++ < all.size())
       member = (T) all[at - 1];
@@ -71,8 +71,8 @@ class Fields {
     double size = (double) text.size();
     number(size);
     const bool fits = size >= 0.0 && size <= (double) all.size() - (double) at;
-    if (is_file) text.resize(fits ? (size_t) size : 0);
-    if (is_file && !fits) at = all.size() + 1;    // the file is damaged
+    if (reads()) text.resize(fits ? (size_t) size : 0);
+    if (reads() && !fits) at = all.size() + 1;    // the file is damaged
     for (char &one : text) number(one);
   }
 };

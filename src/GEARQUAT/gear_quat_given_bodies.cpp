@@ -197,9 +197,10 @@ Molecule **GearQuat::find_template(LAMMPS *lmp, const std::string &template_id)
   return &lmp->atom->molecules[first];
 }
 
-GivenBody GearQuat::given_at(const StatedMolecule &stated, const Insertion &at)
+GivenBody GearQuat::given_at(const StatedMolecule &stated, const double *center,
+                             const double *velocity, const double *wxyz)
 {
-  const double q[4] = {at.quat[1], at.quat[2], at.quat[3], at.quat[0]};
+  const double q[4] = {wxyz[1], wxyz[2], wxyz[3], wxyz[0]};
   double a[9], arm[3], turned[9];
   rotation_matrix(q, dot4(q, q), a);
   to_space(a, stated.center, arm);
@@ -213,8 +214,8 @@ GivenBody GearQuat::given_at(const StatedMolecule &stated, const Insertion &at)
   GivenBody given = GivenBody();
   given.mass = stated.mass;
   for (int k = 0; k < 3; ++k) {
-    given.center[k] = at.center[k] + arm[k];
-    given.velocity[k] = at.velocity[k];
+    given.center[k] = center[k] + arm[k];
+    given.velocity[k] = velocity[k];
   }
   const double tensor[6] = {turned[0], turned[4], turned[8], turned[1], turned[2], turned[5]};
   std::copy_n(tensor, 6, given.inertia);

@@ -61,37 +61,24 @@ void write_given_bodies(LAMMPS *lmp, const std::string &filename, const std::str
 
 /// Properties given in a molecule template, in the frame of the template.
 struct StatedMolecule {
-  bool differs;    ///< from the sums over its atoms; if false, these sums are used
   double mass;
   double center[3];    ///< of mass, from the geometric center
   double inertia[9];
-};
-
-/// Position of an inserted molecule: geometric center, velocity, rotation (scalar part first).
-struct Insertion {
-  const double *center, *velocity, *quat;
 };
 
 /// The molecules of a template, for comparison in LAMMPS' inserting fixes; null for an empty ID.  A
 /// template that does not exist ends the run.
 Molecule **find_template(LAMMPS *lmp, const std::string &template_id);
 
-/// The properties given in a template, one entry for each molecule; none for an empty ID.  Ends the
-/// run with the name of the template if a body cannot have these properties.  Rank 0 reports
-/// differences from the atoms, or, in a plugin for a LAMMPS without the header, that they cannot be
-/// read.
-std::vector<StatedMolecule> read_stated(LAMMPS *lmp, const std::string &template_id);
+/// The properties given in a template, of the molecules for which they differ from the sums over
+/// atoms, by their numbers; none for an empty ID.  Rank 0 reports differences from the atoms, or, in
+/// a plugin for a LAMMPS without the header, that they cannot be read.
+std::map<int, StatedMolecule> read_stated(LAMMPS *lmp, const std::string &template_id);
 
-/// True if one of them differs from the sums over its atoms.
-inline bool any_differs(const std::vector<StatedMolecule> &stated)
-{
-  for (const auto &molecule : stated)
-    if (molecule.differs) return true;
-  return false;
-}
-
-/// The molecule of the template at its position, rotated.
-GivenBody given_at(const StatedMolecule &stated, const Insertion &at);
+/// A molecule that is inserted with its geometric center at a position, with a velocity, and rotated
+/// by a quaternion with the scalar part first.
+GivenBody given_at(const StatedMolecule &stated, const double *center, const double *velocity,
+                   const double *wxyz);
 
 }    // namespace LAMMPS_NS::GearQuat
 

@@ -29,7 +29,6 @@ void Minimization::init()
         "Fix gear/quat cannot be used with min_style {}, which does not let fixes take part; "
         "use min_style cg or sd",
         update->minimize_style);
-  fitted = false;
 }
 
 void Minimization::begin()
@@ -82,16 +81,6 @@ void Minimization::fit()
   }
   ownership.spread_moved();
   sites.place(false);
-  fitted = true;
-}
-
-void Minimization::fit_all()
-{
-  if (!fitted) {
-    fit();
-    comm->forward_comm();
-  }
-  fitted = false;
 }
 
 void Minimization::project(double **f)

@@ -38,9 +38,6 @@ class Minimization : protected Pointers {
   void begin();
   /// Moves bodies to their atoms, and atoms to their positions, except ghosts.  Collective.
   void fit();
-  /// Moves bodies, atoms and ghosts before forces are evaluated, unless fit() was called after the
-  /// last evaluation.
-  void fit_all();
   /// Projects the forces f on atoms of bodies onto rigid motions.  Collective.
   void project(double **f);
 
@@ -53,8 +50,6 @@ class Minimization : protected Pointers {
   Bodies &bodies;
   Ownership &ownership;
   Sites &sites;
-  bool fitted = false;
-
   /// In the memory of the history of a body, which a minimization does not need, and which travels
   /// with the body.
   struct Stored {

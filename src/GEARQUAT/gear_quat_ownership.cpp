@@ -65,10 +65,10 @@ void Ownership::clear(bool with_extended)
   for (size_t i = 0; i < assigned.size(); ++i) set_arrays(i);
 }
 
-void Ownership::create(const std::vector<tagint> &ids, const GivenBodies &given)
+bool Ownership::create(const std::vector<tagint> &ids, const GivenBodies &given)
 {
   clear();
-  add(ids, given, false);
+  return add(ids, given, false);
 }
 
 void Ownership::count()
@@ -87,7 +87,7 @@ void Ownership::note_box()
   last_box.insert(last_box.end(), domain->boxlo, domain->boxlo + 3);
 }
 
-void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh,
+bool Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh,
                     const Former *former)
 {
   std::vector<int> atoms;
@@ -97,13 +97,14 @@ void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
   const bool any_extended = records.any(atoms);
   if (any_extended && !records.has_records()) records.reset(true, (int) assigned.size());
 
+  bool free = false;
   const Assembly assembly(lmp, given, any_extended ? &records : nullptr, ids, former);
   assembly.for_sites([&](const Assembly::Made &one, int i, const double *arm_body) {
     assigned[i].id = one.body.id;
     assigned[i].owner = one.owner;
     assigned[i].mass = mass_of(i);
     std::copy_n(arm_body, 3, assigned[i].arm);
-    free_atoms = free_atoms || one.moves_apart(atom->v[i], arm_body);
+    free = free || one.moves_apart(atom->v[i], arm_body);
     if (any_extended) records.attach(i, mass_of(i), one.state.q);
   });
   for (const auto &one : assembly.bodies()) {
@@ -114,6 +115,7 @@ void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
     bodies.change_state(ibody) = one.state;
   }
   count();
+  return free;
 }
 
 void Ownership::recreate()

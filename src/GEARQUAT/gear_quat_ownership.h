@@ -77,11 +77,12 @@ class Ownership : protected Pointers {
 
   // life cycle, all collective
 
-  /// Builds all bodies from the atoms; ids: body of every owned atom, 0 for none.
-  void create(const std::vector<tagint> &ids, const GivenBodies &given);
+  /// Builds all bodies from the atoms; ids: body of every owned atom, 0 for none.  True if some atoms
+  /// on this rank do not move as rigid bodies.
+  bool create(const std::vector<tagint> &ids, const GivenBodies &given);
   /// Builds more bodies, from atoms that are in none.  fresh: in a step, without histories.
   /// former: null, or of the same bodies, whose axes are kept if possible.
-  void add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh,
+  bool add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh,
            const Former *former = nullptr);
   /// Rebuilds the same bodies from the atoms' present masses, positions and velocities.
   void recreate();
@@ -106,8 +107,6 @@ class Ownership : protected Pointers {
   bool change_masks(const std::map<tagint, Mask> &masks);
   /// Atoms in bodies, on all ranks.
   bigint number_of_atoms() const { return natoms; }
-  /// True if some atoms on this rank did not move as rigid bodies when they became bodies.
-  bool had_free_atoms() const { return free_atoms; }
   /// The box of the positions of bodies, as Domain::h and boxlo.
   const std::vector<double> &box() const { return last_box; }
   /// Sets this box to the current box of LAMMPS.
@@ -155,8 +154,7 @@ class Ownership : protected Pointers {
   Bodies &bodies;
   Extended records;
 
-  bigint natoms = 0;    ///< on all ranks
-  bool free_atoms = false;
+  bigint natoms = 0;          ///< on all ranks
   bool any_ghosts = false;    ///< on some rank an atom belongs to a body of another rank that is
                               ///< not large; changes only when atoms are exchanged
   std::vector<double> last_box;

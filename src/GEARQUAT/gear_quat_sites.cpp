@@ -58,7 +58,6 @@ void Sites::list()
     if (entry.second) images.push_back(periods);
     image[n] = entry.first->second;
   }
-  any_images = images.size() > 1 || (!images.empty() && images[0] != std::array<int, 3>{0, 0, 0});
   extended.sites.clear();
   if (extended.has_records())
     for (const Site &site : sites) extended.list(site.atom, site.body);
@@ -114,11 +113,13 @@ std::array<int, 3> Sites::image_of(const Site &site) const
    positions and velocities
 ------------------------------------------------------------------------- */
 
-/// Computes the displacements of the images in the present box.
-void Sites::find_ways()
+/// Computes the displacements of the images in the present box.  False if all images are zero.
+bool Sites::find_ways()
 {
+  if (images.empty() || (images.size() == 1 && images[0] == std::array<int, 3>{})) return false;
   ways.resize(images.size());
   for (size_t m = 0; m < images.size(); ++m) through(domain->h, images[m].data(), ways[m].data());
+  return true;
 }
 
 template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Sites::place_points()
@@ -158,10 +159,9 @@ template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Sites::place_point
 template <bool POSITIONS, bool VELOCITIES> void Sites::place_points()
 {
   ++nplacements;
-  if (POSITIONS && any_images) {
-    find_ways();
+  if (POSITIONS && find_ways())
     place_points<POSITIONS, VELOCITIES, true>();
-  } else
+  else
     place_points<POSITIONS, VELOCITIES, false>();
   if (VELOCITIES) {
     note_rates();

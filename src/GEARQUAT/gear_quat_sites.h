@@ -135,7 +135,6 @@ class Sites : protected Pointers {
   std::vector<int> image;                     ///< of the sites: index of the image
   std::vector<std::array<double, 3>> ways;    ///< scratch: of the images, in the present box
   std::vector<int> first, first_arm;    ///< the first site of each body, and the first with an arm
-  bool any_images = false;              ///< some of these are not zero
   bool any_forces = true;
   Rates face_rates = {};
   int face_group = 1;    ///< bit of the group of fix deform
@@ -143,7 +142,7 @@ class Sites : protected Pointers {
 
   void sort();
   void wrap(const Site &site, double *away) const;
-  void find_ways();
+  bool find_ways();
   void add_flow(const Site &site, double factor, double *velocity) const;
   void note_rates();
   template <bool POSITIONS, bool VELOCITIES> void place_points();

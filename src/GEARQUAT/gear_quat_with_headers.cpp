@@ -59,7 +59,7 @@ static StatedMolecule present(Molecule *molecule)
   molecule->compute_inertia();
   const double *t = molecule->itensor;    // xx yy zz yz xz xy
   StatedMolecule now = {
-      false, molecule->masstotal, {}, {t[0], t[5], t[4], t[5], t[1], t[3], t[4], t[3], t[2]}};
+      molecule->masstotal, {}, {t[0], t[5], t[4], t[5], t[1], t[3], t[4], t[3], t[2]}};
   for (int k = 0; k < 3; ++k) now.center[k] = molecule->com[k] - molecule->center[k];
   return now;
 }
@@ -74,41 +74,41 @@ static bool differ(const StatedMolecule &a, const StatedMolecule &b, double size
   return any;
 }
 
-static StatedMolecule read_stated(LAMMPS *lmp, Molecule *molecule, const std::string &template_id)
+/// The sums over the atoms; the molecule keeps its given properties.
+static StatedMolecule summed(Molecule *molecule)
 {
-  const int flags[3] = {molecule->massflag, molecule->comflag, molecule->inertiaflag};
-  StatedMolecule stated = present(molecule);
-  if (!flags[0] && !flags[1] && !flags[2]) return stated;
-
   const double mass = molecule->masstotal;
   double com[3], tensor[6];
   std::copy_n(molecule->com, 3, com);
   std::copy_n(molecule->itensor, 6, tensor);
   molecule->massflag = molecule->comflag = molecule->inertiaflag = 0;
-  const StatedMolecule summed = present(molecule);
+  const StatedMolecule sums = present(molecule);
   molecule->masstotal = mass;
   std::copy_n(com, 3, molecule->com);
   std::copy_n(tensor, 6, molecule->itensor);
   present(molecule);    // compute dependent quantities
-
-  const double size = std::max(molecule->maxextent, molecule->molradius);
-  stated.differs = differ(stated, summed, size);
-  if (!stated.differs) return stated;
-  if (lmp->comm->me == 0)
-    utils::logmesg(
-        lmp,
-        "Fix gear/quat: molecule template {} gives a mass, center of mass or inertia "
-        "that differ from its atoms; bodies use the given values (mass {:g}, atoms {:g})\n",
-        template_id, stated.mass, summed.mass);
-  return stated;
+  return sums;
 }
 
-std::vector<StatedMolecule> GearQuat::read_stated(LAMMPS *lmp, const std::string &template_id)
+std::map<int, StatedMolecule> GearQuat::read_stated(LAMMPS *lmp, const std::string &template_id)
 {
-  std::vector<StatedMolecule> all;
+  std::map<int, StatedMolecule> all;
   Molecule **molecules = find_template(lmp, template_id);
-  for (int n = 0; molecules && n < molecules[0]->nset; ++n)
-    all.push_back(::read_stated(lmp, molecules[n], template_id));
+  for (int n = 0; molecules && n < molecules[0]->nset; ++n) {
+    Molecule *one = molecules[n];
+    const bool states = one->massflag || one->comflag || one->inertiaflag;
+    const StatedMolecule stated = present(one);
+    if (!states) continue;
+    const StatedMolecule sums = summed(one);
+    if (!differ(stated, sums, std::max(one->maxextent, one->molradius))) continue;
+    all[n] = stated;
+    if (lmp->comm->me == 0)
+      utils::logmesg(
+          lmp,
+          "Fix gear/quat: molecule template {} gives a mass, center of mass or inertia "
+          "that differ from its atoms; bodies use the given values (mass {:g}, atoms {:g})\n",
+          template_id, stated.mass, sums.mass);
+  }
   return all;
 }
 

@@ -197,7 +197,7 @@ NOT_IN_A_FILE = {
     },
     "sites Sites": {
         OTHERS: "bodies ownership extended",
-        DERIVED: "sites images image ways first first_arm any_images",
+        DERIVED: "sites images image ways first first_arm",
         RUN: "any_forces nplacements",
     },
     "step Step": {
