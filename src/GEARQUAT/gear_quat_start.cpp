@@ -30,7 +30,8 @@ Start::Start(LAMMPS *lmp, const std::vector<Step *> &fixes, double h) :
       }
       return all;
     }()),
-    forces(lmp, owners()), collocation(most_values()), nodes{collocation, 0.0, h}
+    forces(lmp, owners()), collocation(most_values()), nodes{collocation, 0.0, h},
+    reason(forces.reason())
 {
 }
 
@@ -50,55 +51,26 @@ int Start::most_values() const
 
 void Start::run()
 {
-  std::string why = forces.reason();
-  bool found = false;
-  if (why.empty()) {
-    const StartFound start = search();
-    found = start.verdict != StartPlan::Verdict::SHORTER_SPACING;
-    const bool any = std::any_of(starters.begin(), starters.end(), [](const auto &one) {
-      return one.step->bodies.number() > 0;
-    });
-    if (found && comm->me == 0 && any)
-      utils::logmesg(lmp, "Fix gear/quat {}: start of order {} from {} force evaluations{}\n",
-                     names(), orders(start), evaluations, reason);
-    why = reason;
-  }
+  StartFound start = {StartPlan::Verdict::SHORTER_SPACING};
+  if (reason.empty()) start = search();
+  const bool found = start.verdict != StartPlan::Verdict::SHORTER_SPACING;
   for (auto &one : starters) {
-    if (!found) one.step->seed_local(3);
-    if (!found && comm->me == 0)
-      utils::logmesg(lmp, "Fix gear/quat {}: start with known forces only (order 2), because {}\n",
-                     one.step->fix->id, why);
-    one.step->note_start();
+    Step &step = *one.step;
+    std::string text = "start with known forces only (order 2), because " + reason;
+    if (!found) {
+      step.seed_local(3);
+    } else {
+      const bool jumps = start.verdict == StartPlan::Verdict::JUMPS;
+      const int full = step.scheme().order(), order = jumps ? std::min(full, start.order()) : full;
+      text = fmt::format("start of order {} from {} force evaluations", order, evaluations);
+      if (order < full)
+        text += fmt::format(", because forces change suddenly, by {:.1g} of the motion in a step",
+                            start.change);
+    }
+    if (comm->me == 0 && (!found || step.bodies.number() > 0))
+      utils::logmesg(lmp, "Fix gear/quat {}: {}\n", step.fix->id, text);
+    step.note_start();
   }
-}
-
-std::string Start::names() const
-{
-  std::vector<std::string> ids;
-  for (const auto *fix : owners()) ids.emplace_back(fix->id);
-  return utils::join_words(ids, " and ");
-}
-
-/// True if forces become discontinuous so early that a history starts with a reduced order.
-bool Start::lowers_order(const StartFound &start) const
-{
-  return start.verdict == StartPlan::Verdict::JUMPS &&
-      std::any_of(starters.begin(), starters.end(), [&start](const auto &one) {
-           return start.order() < one.step->scheme().order();
-         });
-}
-
-/// The initial orders of the histories.
-std::string Start::orders(const StartFound &start) const
-{
-  std::string orders;
-  for (const auto &one : starters) {
-    const int full = one.step->scheme().order();
-    const std::string order =
-        std::to_string(lowers_order(start) ? std::min(full, start.order()) : full);
-    if (orders.empty() || orders != order) orders += (orders.empty() ? "" : " and ") + order;
-  }
-  return orders;
 }
 
 /* ----------------------------------------------------------------------
@@ -216,12 +188,8 @@ StartFound Start::search()
   const StartFound start =
       find_start(most_values(), first_spacing(), *this, coupled ? StartPlan::COUPLED : 0.0);
   if (start.verdict != StartPlan::Verdict::SHORTER_SPACING) {
-    reason.clear();
     for (auto &one : starters)
       one.step->choose_scheme(fast_edge(one, std::min(start.pairs, PAIRS_THAT_TELL)));
-    if (lowers_order(start))
-      reason = fmt::format(", because forces change suddenly, by {:.1g} of the motion in a step",
-                           start.change);
     seed_all(start.pairs);
   }
   put_back();

@@ -48,13 +48,10 @@ class Start : protected Pointers {
   Collocation collocation;
   StartNodes nodes;       ///< the present spacing
   int evaluations = 0;    ///< of the forces, so far
-  std::string reason;     ///< why the last spacing failed, or a remark about this spacing
+  std::string reason;     ///< why forces cannot be followed, or the last spacing failed
 
   int most_values() const;
   std::vector<const Fix *> owners() const;
-  std::string names() const;
-  bool lowers_order(const StartFound &start) const;
-  std::string orders(const StartFound &start) const;
   double first_spacing() const;
   StartFound search();
   bool visit_node(int node, double &change);
