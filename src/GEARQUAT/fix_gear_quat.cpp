@@ -45,7 +45,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
          [this](int vflag, double **f) {
            tally_virial(vflag, f);
          }),
-    driven_box(lmp, this, args, bodies, ownership, sites, other_fixes, step),
+    driven_box(lmp, this, args, bodies, ownership, sites, step),
     minimization(lmp, bodies, ownership, sites), respa(lmp),
     outputs(lmp, bodies, ownership, sites, args.mol)
 {

@@ -22,8 +22,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdint>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {

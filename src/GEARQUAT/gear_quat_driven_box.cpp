@@ -7,7 +7,6 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_box.h"
-#include "gear_quat_fixes.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_step.h"
 

@@ -19,26 +19,21 @@
 
 #include "gear_quat_sites.h"
 
-#include <array>
-#include <vector>
-
 namespace LAMMPS_NS {
 class Fix;
 }    // namespace LAMMPS_NS
 
 namespace LAMMPS_NS::GearQuat {
 
-class OtherFixes;
 class Step;
 struct Arguments;
 
 class DrivenBox : protected Pointers {
  public:
   DrivenBox(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies,
-            Ownership &ownership, Sites &sites, OtherFixes &others, Step &step) :
+            Ownership &ownership, Sites &sites, Step &step) :
       Pointers(lmp),
-      fix(fix), args(args), bodies(bodies), ownership(ownership), sites(sites), others(others),
-      step(step)
+      fix(fix), args(args), bodies(bodies), ownership(ownership), sites(sites), step(step)
   {
   }
 
@@ -69,7 +64,6 @@ class DrivenBox : protected Pointers {
   Bodies &bodies;
   Ownership &ownership;
   Sites &sites;
-  OtherFixes &others;
   Step &step;
   const Fix *driver = nullptr;    ///< a fix that changes the box in this run
 

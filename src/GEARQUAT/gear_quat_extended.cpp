@@ -154,16 +154,14 @@ void Extended::refuse(const std::vector<int> &atoms) const
                  atom->get_style(), refusal);
   }
   const bool superellipsoids = has_superellipsoids(atom, 0) != 0;
-  tagint here[3] = {0, 0, 0};    // of style body, superellipsoids, without header
+  tagint here[2] = {0, 0};    // of a shape that no fix moves, or that this plugin cannot read
   int shape = POINT;
   for (const int i : atoms) {
     const int one = shape_of(i);
-    if (one == BODY)
+    if (one == BODY || (one == ELLIPSOID && superellipsoids))
       here[0] = atom->tag[i];
-    else if (one == ELLIPSOID && superellipsoids)
-      here[1] = atom->tag[i];
     else if (one != POINT && one != SPHERE && !READS_ATOM_STYLES) {
-      here[2] = atom->tag[i];
+      here[1] = atom->tag[i];
       shape = one;
     }
   }
@@ -171,21 +169,17 @@ void Extended::refuse(const std::vector<int> &atoms) const
   shape = over_ranks(MPI_MAX, shape, world);
   if (found[0])
     error->all(FLERR,
-               "Fix gear/quat: atom {} is a particle of atom style body; the atoms of a rigid body "
-               "may be points, spheres, ellipsoids, lines, triangles and dipoles",
+               "Fix gear/quat: atom {} is a particle of atom style body or a superellipsoid; the "
+               "atoms of a rigid body may be points, spheres, ellipsoids, lines, triangles and "
+               "dipoles",
                found[0]);
   if (found[1])
-    error->all(FLERR,
-               "Fix gear/quat: atom {} is a superellipsoid; the atoms of a rigid body may be "
-               "points, spheres, ellipsoids, lines, triangles and dipoles",
-               found[1]);
-  if (found[2])
     error->all(
         FLERR,
         "Fix gear/quat: atom {} is {}, which this plugin cannot turn, because it was "
         "compiled without the headers for that; compile GEARQUAT for the source tree of your "
         "LAMMPS: cmake -B build -D LAMMPS_SOURCE_DIR=/path/to/lammps",
-        found[2], SHAPES[shape]);
+        found[1], SHAPES[shape]);
 }
 
 /* ----------------------------------------------------------------------

@@ -22,6 +22,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <stdexcept>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -35,9 +36,10 @@ static constexpr int NUMBERS = GivenBody::NUMBERS;
 static_assert(offsetof(GivenBody, image) == NUMBERS * sizeof(double), "as many words in a line");
 
 /// An error in the file, kept until all ranks can report it together.
-struct Fault {
-  std::string text;
-};
+[[noreturn]] void fail(const std::string &text)
+{
+  throw std::runtime_error(text);
+}
 
 /// LAMMPS' own splitting interprets quotation marks, and reads beyond the line if one is not
 /// closed.
@@ -52,8 +54,8 @@ double number(const std::string &word, const std::string &where)
   char *end = nullptr;
   const double value = std::strtod(word.c_str(), &end);
   if (!utils::is_double(word) || end != word.c_str() + word.size())
-    throw Fault{where + ": '" + word.c_str() + "' is not a number"};
-  if (!std::isfinite(value)) throw Fault{where + ": '" + word + "' is not a finite number"};
+    fail(where + ": '" + word.c_str() + "' is not a number");
+  if (!std::isfinite(value)) fail(where + ": '" + word + "' is not a finite number");
   return value;
 }
 
@@ -64,31 +66,31 @@ bigint integer(const std::string &word, const std::string &where, const char *wh
   char *end = nullptr;
   const bigint value = std::strtoll(word.c_str(), &end, 10);    // on overflow the limit
   if (!utils::is_integer(word) || end != word.c_str() + word.size())
-    throw Fault{where + ": '" + word.c_str() + "' is not an integer (" + what + ")"};
+    fail(where + ": '" + word.c_str() + "' is not an integer (" + what + ")");
   return value > most || value < -most ? most + 1 : value;
 }
 
 GivenLine parse_line(const std::vector<std::string> &words, const std::string &where)
 {
   if (words.size() != COLUMNS)
-    throw Fault{where + " has " + std::to_string(words.size()) + " words instead of " +
-                std::to_string(COLUMNS) +
-                ": ID mass x y z ixx iyy izz ixy ixz iyz vx vy vz lx ly lz ix iy iz"};
+    fail(where + " has " + std::to_string(words.size()) + " words instead of " +
+         std::to_string(COLUMNS) +
+         ": ID mass x y z ixx iyy izz ixy ixz iyz vx vy vz lx ly lz ix iy iz");
   static constexpr const char *INTEGERS = "body ID and image flags are";
   GivenLine line;
   const bigint id = integer(words[0], where, INTEGERS, MAXTAGINT - 1);
   if (id < 1 || id == MAXTAGINT)
-    throw Fault{where + ": body ID " + words[0] + " is not positive or too large"};
+    fail(where + ": body ID " + words[0] + " is not positive or too large");
   line.id = (tagint) id;
   for (int i = 0; i < 3; ++i) {
     const std::string &word = words[1 + NUMBERS + i];
     line.body.image[i] = (int) integer(word, where, INTEGERS, IMGMAX - 1);
-    if (line.body.image[i] == IMGMAX) throw Fault{where + ": image flag " + word + " is too large"};
+    if (line.body.image[i] == IMGMAX) fail(where + ": image flag " + word + " is too large");
   }
   double numbers[NUMBERS];
   for (int i = 0; i < NUMBERS; ++i) numbers[i] = number(words[1 + i], where);
   if (numbers[0] <= 0.0)
-    throw Fault{where + ": mass " + words[1] + " of body " + words[0] + " is not positive"};
+    fail(where + ": mass " + words[1] + " of body " + words[0] + " is not positive");
   std::memcpy(&line.body, numbers, sizeof(numbers));
   return line;
 }
@@ -96,7 +98,7 @@ GivenLine parse_line(const std::vector<std::string> &words, const std::string &w
 std::vector<GivenLine> parse_file(const std::string &filename)
 {
   std::ifstream file(filename);
-  if (!file) throw Fault{"cannot open file " + filename};
+  if (!file) fail("cannot open file " + filename);
 
   std::vector<GivenLine> lines;
   std::map<tagint, int> seen;
@@ -110,24 +112,24 @@ std::vector<GivenLine> parse_file(const std::string &filename)
     if (announced.empty()) {
       announced = words[0];
       if (words.size() != 1 || !utils::is_integer(words[0]))
-        throw Fault{where + ": the first line must be the number of bodies"};
+        fail(where + ": the first line must be the number of bodies");
       expected = integer(words[0], where, "the number of bodies is", MAXSMALLINT);
       continue;
     }
     lines.push_back(parse_line(words, where));
     const tagint id = lines.back().id;
     if (seen.count(id))
-      throw Fault{where + ": body " + words[0] + " was given on line " + std::to_string(seen[id]) +
-                  " already"};
+      fail(where + ": body " + words[0] + " was given on line " + std::to_string(seen[id]) +
+           " already");
     seen[id] = n;
   }
   if (announced.empty())
-    throw Fault{"file " + filename +
-                " is empty: its first line must be the number "
-                "of bodies"};
+    fail("file " + filename +
+         " is empty: its first line must be the number "
+         "of bodies");
   if (expected != (bigint) lines.size())
-    throw Fault{"file " + filename + " announces " + announced + " bodies and has " +
-                std::to_string(lines.size())};
+    fail("file " + filename + " announces " + announced + " bodies and has " +
+         std::to_string(lines.size()));
   return lines;
 }
 
@@ -141,10 +143,8 @@ GivenBodies GearQuat::read_given_bodies(LAMMPS *lmp, const std::string &filename
   if (lmp->comm->me == 0) {
     try {
       lines = parse_file(filename);
-    } catch (const Fault &f) {
-      fault = f.text;
     } catch (const std::exception &e) {
-      fault = "file " + filename + ": " + e.what();
+      fault = e.what();
     }
   }
 

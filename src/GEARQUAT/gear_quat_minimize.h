@@ -20,8 +20,6 @@
 #include "gear_quat_nearest.h"
 #include "gear_quat_sites.h"
 
-#include <vector>
-
 namespace LAMMPS_NS::GearQuat {
 
 class Minimization : protected Pointers {

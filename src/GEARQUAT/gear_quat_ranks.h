@@ -197,11 +197,6 @@ class Parts {
 
   int number() const { return (int) keys.size(); }
   tagint key(int part) const { return keys[part]; }
-  /// The part with this key, which one of the atoms must have.
-  int find(tagint key) const
-  {
-    return (int) (std::lower_bound(keys.begin(), keys.end(), key) - keys.begin());
-  }
   struct Atoms {
     const int *first, *last;
     const int *begin() const { return first; }

@@ -318,7 +318,7 @@ void Sites::refuse_tears() const
   ownership.spread(owners);
 
   const bool same_box = std::equal(domain->h, domain->h + 6, ownership.box().begin());
-  tagint here[3] = {0, 0, 0};    // bodies that are torn, cut by the box, or changed with it
+  tagint here[2] = {0, 0};    // bodies that are torn, or changed with the box
   for (const Site &site : sites) {
     const Owner &owner = owners[site.body];
     double found[3], expected[3], before[3], now[3], change[3];
@@ -332,8 +332,10 @@ void Sites::refuse_tears() const
     const double few = SAME_LENGTH * (domain->xprd + domain->yprd + domain->zprd);
     const tagint id = bodies.body_at(site.body).id;
     if (whole_periods_away(domain, change, further)) here[0] = id;
-    if (moved_with_faces(domain, ownership.box().data(), change)) here[1] = id;
-    if (!same_box && std::fabs(further) > SAME_SHAPE * length(before) + few) here[2] = id;
+    if (!same_box &&
+        (std::fabs(further) > SAME_SHAPE * length(before) + few ||
+         moved_with_faces(domain, ownership.box().data(), change)))
+      here[1] = id;
   }
   const auto all = over_ranks(MPI_MAX, here, world);
   if (all[0])
@@ -346,16 +348,12 @@ void Sites::refuse_tears() const
   if (all[1])
     error->all(
         FLERR,
-        "Fix gear/quat: the box was changed while body {} lies across its faces, which tears "
-        "it; first move the body inside with displace_atoms, or change the box with fix deform",
-        all[1]);
-  if (all[2])
-    error->all(
-        FLERR,
         "Fix gear/quat: the box has changed, and body {} has another shape than before: change_box "
-        "with remap moves each atom by itself; change the box with fix deform, which moves bodies "
-        "as a whole, or, to keep this shape, define the fix after the change",
-        all[2]);
+        "with remap moves each atom by itself, and without remap it tears a body that lies across "
+        "faces; change the box with fix deform, which moves bodies as a whole, move the body "
+        "inside "
+        "before, or, to keep this shape, define the fix after the change",
+        all[1]);
 }
 
 /* ----------------------------------------------------------------------

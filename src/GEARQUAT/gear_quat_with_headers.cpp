@@ -16,7 +16,6 @@
 #include "atom_vec_line.h"
 #include "atom_vec_tri.h"
 #include "comm.h"
-#include "error.h"
 #include "lammps.h"
 #include "molecule.h"
 #include "respa.h"

@@ -247,7 +247,7 @@ def test_masses_that_go_from_atom_to_atom(lmp_tree, swap, extended):
 
 
 TORN = "some atoms of body 1 are displaced from the others by whole periods of the box"
-CUT = "the box was changed while body 1 lies across its faces"
+CUT = "the box has changed, and body 1 has another shape than before"
 ACROSS = "displace_atoms all move 9.5 0 0\nfix move all"
 
 
