@@ -62,8 +62,7 @@ Bath::Bath(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, c
     box(lmp, fix, bodies, sites, args.pressure, temperature), bodies(bodies),
     words(args.thermostat),
     thermostats(words.damp > 0.0 && !words.is_random() ? 1 + words.separate : 0),
-    chains(thermostats, Chain(words.length)),
-    isokinetic(lmp, bodies, args.isokinetic, args.rescale)
+    chains(thermostats, Chain(words.length)), isokinetic(lmp, bodies, args.isokinetic, args.rescale)
 {
   if (box.moves() && args.pressure.length > 0) chains.emplace_back(args.pressure.length);
   set_scheme(scheme_of_bath(args.scheme));
@@ -142,6 +141,12 @@ void Bath::begin_run(bool anew, double h)
     tell_freedoms();
   }
   if (thermostats > 0) {
+    if (temperature.has_flow() && words.length > 1)
+      error->all(FLERR,
+                 "Fix gear/quat temp: in the flow of fix deform remap v a chain of {} variables "
+                 "does not hold the temperature, because friction does work all the time; add "
+                 "keyword tchain 1",
+                 words.length);
     // a single pass uses only the predicted friction; tolerance limits a step to exactly this many
     const double fewest = (single_pass ? 2.0 : 1.0) * FEWEST_STEPS;
     if (words.damp < (1.0 - ROUNDING) * fewest * std::fabs(h) && comm->me == 0)
@@ -230,6 +235,8 @@ void Bath::share_friction()
 
 template <class Damper> Damper Bath::friction_of(int ibody, Damper found) const
 {
+  if constexpr (std::is_same_v<Damper, Friction>)
+    if (temperature.has_flow()) std::copy_n(temperature.flow_at(ibody).data(), 3, found.common);
   if (bodies.body_at(ibody).off == 0) return found;
   for (int k = 0; k < 3; ++k)
     if (!temperature.has(ibody, TRANSLATION, k)) found.release(k);
@@ -284,7 +291,11 @@ void Bath::take_random_step(const Integrator &integrator)
       }
       BodyState &state = bodies.change_state(ibody);
       const auto normal = normal_numbers(words.seed, update->ntimestep, body.id);
+      const auto flow = temperature.has_flow() ? temperature.flow_at(ibody)
+                                               : std::array<double, 3>();
+      for (int k = 0; k < 3; ++k) state.velocity[k] -= flow[k];
       const double gained = step.take(body.rigid, changes, normal, state);
+      for (int k = 0; k < 3; ++k) state.velocity[k] += flow[k];
       if (ibody < bodies.nowned()) randomly_taken -= gained;
       integrator.set_velocities(body.rigid, box.scaled(state), acting(ibody),
                                 bodies.history(ibody));
@@ -322,7 +333,7 @@ void Bath::correct(const Integrator &integrator, int passes)
       const auto correct_pass = [&](const Load &load, const auto &friction) {
         integrator.correct_pass(rigid, load, friction, rows, pending[ibody]);
       };
-      const bool masked = bodies.body_at(ibody).off != 0;
+      const bool masked = bodies.body_at(ibody).off != 0 || temperature.has_flow();
       if (box.moves() && masked)
         correct_pass(box.scaled(bodies.acting(ibody)), friction_of(ibody, box.friction()));
       else if (box.moves())

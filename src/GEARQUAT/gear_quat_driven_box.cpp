@@ -56,12 +56,10 @@ void DrivenBox::init()
                  "of the number of the step; leave out keyword tolerance",
                  other->id, other->style);
   }
-  if (driver && domain->deform_vremap &&
-      (args.thermostat.damp > 0.0 || args.isokinetic != Isokinetic::NONE))
+  if (driver && domain->deform_vremap && args.isokinetic != Isokinetic::NONE)
     error->all(FLERR,
-               "Fix gear/quat: the velocities of bodies contain the flow of fix deform remap v, "
-               "which is not thermal motion; leave out keywords temp, langevin and "
-               "isokinetic, or use remap x");
+               "Fix gear/quat isokinetic: the velocities of bodies contain the flow of fix deform "
+               "remap v, which is not thermal motion; use keyword temp, or remap x");
 }
 
 /* ----------------------------------------------------------------------

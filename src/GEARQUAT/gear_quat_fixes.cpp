@@ -218,6 +218,13 @@ std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
   }
   torn = over_ranks(MPI_MAX, torn, world);
   if (!torn) return changed;
+  // a temperature with a bias scales each atom by itself; whole bodies take the rigid part
+  if (std::all_of(acted.begin(), acted.end(), [this](const Fix *one) {
+        return known(Fact::TEMPERATURE, one) && !ownership.count_atoms(one->groupbit).divided;
+      })) {
+    sites.place_velocities();
+    return changed;
+  }
   if (end)
     error->all(FLERR,
                "Fix gear/quat: the velocities that {} gave to atoms of body {} in step {} do not "

@@ -5,6 +5,7 @@
 
 #include "gear_quat_temperature.h"
 
+#include "gear_quat_box.h"
 #include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 
@@ -113,6 +114,7 @@ bigint Temperature::atoms_outside() const
 std::string Temperature::find_outside() const
 {
   if (words.is_random()) return "keyword langevin exerts random forces";
+  if (has_flow()) return "fix deform moves the faces of the box";
   const bigint others = atoms_outside();
   if (others > 0) return fmt::format("{} atoms are in no body of this fix", others);
   const auto with_forces = fixes_with_forces(lmp, fix);
@@ -195,6 +197,10 @@ void Temperature::add(int ibody, const double *velocity, const double *omega_bod
   const RigidBody &rigid = bodies.rigid_of(ibody);
   double along[3] = {velocity[0], velocity[1], velocity[2]};
   const bool masked = bodies.body_at(ibody).off != 0;
+  if (has_flow()) {
+    const auto flow = flow_at(ibody);
+    for (int k = 0; k < 3; ++k) along[k] -= flow[k];
+  }
   for (int k = 0; masked && k < 3; ++k)
     if (!has(ibody, TRANSLATION, k)) along[k] = 0.0;
   sums[TRANSLATION].add(2.0 * translational_energy(rigid, along), energies);
@@ -204,6 +210,24 @@ void Temperature::add(int ibody, const double *velocity, const double *omega_bod
     sums[TENSOR + k].add(rigid.mass * along[Upper::ROW[k]] * along[Upper::COLUMN[k]], energies);
   for (int k = 0; k < 3; ++k)
     if (constant[k]) sums[MOMENTUM + k].add(rigid.mass * along[k], momenta);
+}
+
+bool Temperature::has_flow() const
+{
+  return domain->deform_vremap != 0;
+}
+
+/// As compute temp/deform.  A body has the velocity of the image of its owner atom.
+std::array<double, 3> Temperature::flow_at(int ibody) const
+{
+  double place[3], fraction[3], away[3];
+  through(domain->h, bodies.body_at(ibody).image.data(), away);
+  for (int k = 0; k < 3; ++k) place[k] = bodies.state_of(ibody).center[k] - away[k];
+  domain->x2lamda(place, fraction);
+  std::array<double, 3> flow;
+  through(domain->h_rate, fraction, flow.data());
+  for (int k = 0; k < 3; ++k) flow[k] += domain->h_ratelo[k];
+  return flow;
 }
 
 void Temperature::sum()

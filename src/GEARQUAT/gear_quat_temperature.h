@@ -20,7 +20,10 @@
 
    so that a common motion is conserved and affects nothing else.  In all other directions friction
    acts on whole momenta, including P.  fix_modify extra/dof replaces the rule.  V belongs to every
-   sum, because a deviation from it would grow. */
+   sum, because a deviation from it would grow.
+
+   With fix deform remap v, the velocity of each center is relative to the flow at its place, which is
+   linear between the faces; rotations are not. */
 
 #ifndef LMP_GEAR_QUAT_TEMPERATURE_H
 #define LMP_GEAR_QUAT_TEMPERATURE_H
@@ -33,6 +36,7 @@
 #include "gear_quat_fields.h"
 #include "pointers.h"
 
+#include <array>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -86,6 +90,11 @@ class Temperature : protected Pointers {
   /// Of the present states.  Collective.
   void sum_present();
 
+  /// True with fix deform remap v.
+  bool has_flow() const;
+  /// The velocity of the flow at the center of a body.
+  std::array<double, 3> flow_at(int ibody) const;
+
   /// Atoms in no body of this fix.  Collective.
   bigint atoms_outside() const;
 
@@ -105,8 +114,8 @@ class Temperature : protected Pointers {
   const Fix *fix;
   const Bodies &bodies;
   const ThermostatWords &words;
-  double start, stop;       ///< the target of a run
-  const bool of_bodies;     ///< no keyword states a temperature
+  double start, stop;      ///< the target of a run
+  const bool of_bodies;    ///< no keyword states a temperature
   const bool of_pressure;
 
   bool constant[3] = {}, stated = false;

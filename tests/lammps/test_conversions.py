@@ -352,7 +352,7 @@ fix 3 all deform 1 xy erate 0.05 remap v
 thermo 50
 run 100
 """,
-        "leave out keywords temp, langevin and isokinetic", ("gear/quat molecule temp 1.0 1.0 0.5", "gear/quat molecule"),
+        "add keyword tchain 1", ("gear/quat molecule temp 1.0 1.0 0.5", "gear/quat molecule temp 1.0 1.0 0.5 tchain 1"),
     ),
     "constant pressure in a heat bath": (
         BODIES

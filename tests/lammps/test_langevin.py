@@ -71,7 +71,7 @@ def simulate(lmp_tree):
             before="", words="", after="fix flat all enforce2d" if flat else "", columns="", every=500, warm=500,
             sample=5, averaged="f_move[10] f_move[11]", run="run 2000", langevin=f"{T} {T} 0.25 4711",
         ) | changes  # fmt: skip
-        result = lmp_tree.succeed(DECK.format(**settings), ranks=ranks)
+        result = lmp_tree.succeed(settings.pop("deck", DECK).format(**settings), ranks=ranks)
         return result, np.loadtxt(lmp_tree.folder / "means", ndmin=2)[:, 1:]
 
     return of
@@ -176,6 +176,26 @@ def test_pressure(simulate):
     assert means[:, 0].mean() == pytest.approx(65 * T / 0.1, rel=0.03)
     for samples, exact in zip(means.T, (65 * T / 0.1, T, T)):
         assert abs(z_score(samples, exact)) < 4
+
+
+FLOW = "change_box all triclinic\nfix flow all deform 1 xy erate 0.5 remap v\nvelocity all ramp vx -4 4 y 0 16 sum yes"
+
+
+def test_in_a_flow_without_collisions(simulate):
+    """With friction 1/tau on velocities relative to a flow of rate g, c_x^2 has the mean kT/m (1 + (g tau)^2/2)."""
+    _, means = simulate(before=FLOW, langevin=f"{T} {T} 2.0 4711", run="run 6000")
+    assert abs(z_score(means[:, 0], T * (1 + (0.5 * 2.0) ** 2 / 6))) < 4
+    assert abs(z_score(means[:, 1], T)) < 4
+    assert means[:, 0].mean() == pytest.approx(T * (1 + 1 / 6), rel=0.02)
+
+
+def test_chain_in_a_flow(simulate):
+    """One variable holds the temperature of the motion relative to the flow."""
+    chains = dict(before=FLOW, pair="lj/cut 2.0", coeff="1.0 1.0", dt=0.004, sample=5)
+    words = f"temp {T} {T} 0.2 tchain 1 thermostat separate"
+    _, means = simulate(**chains, deck=DECK.replace("langevin {langevin}", words), run="run 6000", warm=3000)
+    for column in means.T:
+        assert column.mean() == pytest.approx(T, rel=0.005)
 
 
 # --- the same trajectory --------------------------------------------------------------------------
