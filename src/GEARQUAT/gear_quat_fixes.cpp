@@ -217,9 +217,8 @@ std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
     if (!(length(off) <= RIGID * v.size)) torn = std::max(torn, bodies.body_at(site.body).id);
   }
   torn = over_ranks(MPI_MAX, torn, world);
-  if (!torn) return changed;
   // a temperature with a bias scales each atom by itself; whole bodies take the rigid part
-  if (std::all_of(acted.begin(), acted.end(), [this](const Fix *one) {
+  if (!torn || std::all_of(acted.begin(), acted.end(), [this](const Fix *one) {
         return known(Fact::TEMPERATURE, one) && !ownership.count_atoms(one->groupbit).divided;
       })) {
     sites.place_velocities();
