@@ -210,10 +210,9 @@ std::vector<Step *> Step::start(double **f, double **torque)
 const char *Step::reason_to_start_anew(double **f)
 {
   const double now = std::fabs(length()), last = std::fabs(time_step.begun());
-  if (now < SHORTER * last && can_start_anew())
-    return "the time step is less than half of the previous one";
-  if (now > LONGER * last && last != 0.0 && can_start_anew())
-    return "the time step is more than twice the previous one";
+  const bool other_length = now < SHORTER * last || (now > LONGER * last && last != 0.0);
+  if (other_length && can_start_anew())
+    return "the time step has changed by more than a factor of two";
   if (const char *other = another_scheme_suits()) return other;
   const char *changed = bath.reason_to_start_anew();
   if (changed && (tolerance || (bootstraps() && forces_can_be_followed()))) return changed;
@@ -442,13 +441,6 @@ bool Step::read(Fields &file)
    the number of values, where the command does not state it
 ------------------------------------------------------------------------- */
 
-/// For vibrations of these radians in a step.  Collective.
-Choice Step::choose(double edge, int present) const
-{
-  const Noise noise = noise_of_forces(lmp, ownership).noise;
-  return Choice(args.scheme, edge, noise, args.states("corrector"), present);
-}
-
 /// Radians of vibrations in a step, of the bodies on all ranks; infinite if unknown.  here: of the
 /// bodies that this rank owns.  Collective.
 double Step::fast_edge(MotionSums here) const
@@ -458,38 +450,34 @@ double Step::fast_edge(MotionSums here) const
   return bodies.number() > 0 ? here.fast_edge(length()) : HUGE_VAL;
 }
 
-/// Histories have the chosen scheme after the call.
+/// For vibrations of these radians in a step.  Collective.
+Choice Step::choose(double edge, int present) const
+{
+  const Noise noise = noise_of_forces(lmp, ownership).noise;
+  return Choice(args.scheme, edge, noise, args.states("corrector"), present);
+}
+
+/// Histories have the chosen scheme after the call.  Collective.
 void Step::choose_scheme(double edge)
 {
   edge_of_start = edge;
   if (!args.automatic_values) return;
   edge_rate = edge / std::fabs(length());
   const Choice choice = choose(edge);
-  tell(choice, edge);
-  set_scheme(choice.scheme);
-}
-
-/// Collective.
-void Step::tell(const Choice &choice, double edge) const
-{
-  const NoisyForces forces = noise_of_forces(lmp, ownership);    // on all ranks
-  if (comm->me != 0) return;
-  std::string why;
+  std::string why = "because the motion is not known before it begins";
   if (choice.reason == Choice::NOISE)
-    why = "because " + forces.words();
+    why = "because " + noise_of_forces(lmp, ownership).words();    // collective
   else if (choice.reason == Choice::FORMULATION)
     why = "as always with corrector gear";
   else if (std::isfinite(edge))
     why = fmt::format("for vibrations of {:.2g} radians in a step", edge);
-  else
-    why = bodies.number() > 0 ? "because the motion is not known before it begins"
-                              : "because there are no bodies yet";
-  const bool other_corrector = choice.scheme.tuned() != args.scheme.tuned();
-  utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(),
-                 choice.scheme.is_verlet() ? " (velocity Verlet)"
-                     : other_corrector     ? " and corrector gear"
-                                           : "",
-                 why);
+  const char *how = choice.scheme.is_verlet()        ? " (velocity Verlet)"
+      : choice.scheme.tuned() != args.scheme.tuned() ? " and corrector gear"
+                                                     : "";
+  if (comm->me == 0)
+    utils::logmesg(lmp, "Fix gear/quat {}: {} values{}, {}\n", fix->id, choice.scheme.values(), how,
+                   why);
+  set_scheme(choice.scheme);
 }
 
 /// Returns the reason to start histories again with another number of values, null for none.
@@ -624,17 +612,21 @@ template <bool IS_POINT> inline void Step::correct_body(int ibody, double **f)
 {
   double *rows = bodies.history(ibody);
   const Body &body = bodies.body_at(ibody);
-  const Load masked = body.off ? bodies.acting(ibody) : Load();
-  const Load &load = body.off ? masked : bodies.load_of(ibody);
   BodyState &state = bodies.change_state(ibody), before;
-  if (body.off) before = state;
+  const Load *acting = &bodies.load_of(ibody);
+  Load masked;
+  if (body.off) {
+    masked = bodies.acting(ibody);
+    acting = &masked;
+    before = state;
+  }
   Correction &last = bodies.change_last(ibody);
   if (tolerance)
-    last = tolerance->correct(*integrator, ibody, load);
+    last = tolerance->correct(*integrator, ibody, *acting);
   else if (IS_POINT)
-    last = integrator->correct_center(body.rigid, load, rows);
+    last = integrator->correct_center(body.rigid, *acting, rows);
   else
-    last = integrator->correct(body.rigid, load, bodies.axes(ibody), rows);
+    last = integrator->correct(body.rigid, *acting, bodies.axes(ibody), rows);
   if (IS_POINT)
     integrator->center_state(body.rigid, rows, state);
   else

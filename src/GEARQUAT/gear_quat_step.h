@@ -197,7 +197,6 @@ class Step : protected Pointers {
   Choice choose(double edge, int present = 0) const;
   double fast_edge(MotionSums here) const;
   void choose_scheme(double edge);
-  void tell(const Choice &choice, double edge) const;
   const char *another_scheme_suits() const;
 
   // the table of rates

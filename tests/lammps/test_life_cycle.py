@@ -146,7 +146,7 @@ def test_unfix_and_back(case1):
 def test_a_step_shorter_than_half_begins_anew(case1):
     """Histories are not restarted at one half, nor if the step is restored before it is used, nor if a start would not
     be full."""
-    said = "less than half of the previous one; histories are rebuilt"
+    said = "changed by more than a factor of two; histories are rebuilt"
     shorter = case1.run("run 100\ntimestep 0.008\nrun 100")
     assert shorter.stdout.count(said) == 1
     assert shorter.stdout.count("force evaluations") == 2
