@@ -640,9 +640,8 @@ void Step::shorten()
 {
   bodies.put_back_histories();
   bath.put_back();
-  tolerance->shorten_loads();
+  tolerance->shorten();
   make_integrator();
-  tolerance->shorten_step();
   adopt_length();
   bodies.keep_histories();
   bath.keep();

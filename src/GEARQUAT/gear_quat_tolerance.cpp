@@ -318,19 +318,15 @@ bool Tolerance::accepts()
     errors = StepErrors();
     return false;
   }
-  if (!std::isfinite(errors.error) || tries == MOST_TRIES) refuse_lost();
+  if (!std::isfinite(errors.error) || tries == MOST_TRIES)
+    error->all(
+        FLERR,
+        "Fix gear/quat tolerance: step {} was tried {} times, and its error is {:.2g} still at a "
+        "time step of {:.3g}; the forces are not continuous or no numbers, or the tolerance is "
+        "smaller than their rounding",
+        update->ntimestep, tries + 1, errors.error * unit_of_error(), update->dt);
   remembered.conclude(update->dt);
   return true;
-}
-
-void Tolerance::refuse_lost() const
-{
-  error->all(
-      FLERR,
-      "Fix gear/quat tolerance: step {} was tried {} times, and its error is {:.2g} still at "
-      "a time step of {:.3g}; the forces are not continuous or no numbers, or the tolerance "
-      "is smaller than their rounding",
-      update->ntimestep, tries + 1, errors.error * unit_of_error(), update->dt);
 }
 
 /// Refuses a step so short that the time would not change.
@@ -347,13 +343,9 @@ void Tolerance::refuse_frozen() const
         update->ntimestep, least, begun);
 }
 
-void Tolerance::shorten_loads()
+void Tolerance::shorten()
 {
   change_loads(failed.loads);
-}
-
-void Tolerance::shorten_step()
-{
   time_step.change_begun(failed.step);
   refuse_frozen();
 }
@@ -391,10 +383,12 @@ double Tolerance::choose(double permitted)
   return even(next.step, time_step.time_of(update->ntimestep));
 }
 
-/// The next time at which a step has to end, infinite if there is none: a multiple of every_time,
-/// or a dump in intervals of time.  step: positive; now: its beginning.
-double Tolerance::next_output(double step, double now) const
+/// Equal steps that end at the next output if it is due within a few steps: at a multiple of
+/// every_time, or a dump in intervals of time.  The last step ends there to the last bit.  now: the
+/// beginning of the step.
+double Tolerance::even(double step, double now) const
 {
+  if (step <= 0.0) return step;
   const double nearest = now + ROUNDING_OF_TIME * step;    // earlier times belong to the last step
   double next = std::numeric_limits<double>::infinity();
   if (every_time > 0.0) next = (std::floor(now / every_time) + 1.0) * every_time;
@@ -405,15 +399,7 @@ double Tolerance::next_output(double step, double now) const
     if (at <= nearest) at += output->every_time_dump[n];    // it is written now
     if (at > nearest) next = std::min(next, at);
   }
-  return next;
-}
-
-/// Equal steps that end at the next output if it is due within a few steps; the last step ends
-/// there to the last bit. now: the beginning of the step.
-double Tolerance::even(double step, double now) const
-{
-  if (step <= 0.0) return step;
-  const double next = next_output(step, now), way = next - now;
+  const double way = next - now;
   if (!std::isfinite(next) || !(way > 0.0)) return step;
   const double size = even_step(step, way);
   if (way > 1.5 * size)    // rounding of the time is no reason to change the step

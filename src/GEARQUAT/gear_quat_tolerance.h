@@ -10,11 +10,11 @@
      begin_step(), prepare()
      predict        LAMMPS: neighbors, forces
      correct()      of each body, or note_prediction() and note_correction() around a bath
-     accepts()      error too large: [undo, shorten_loads(), shorten_step(), prepare(), predict,
-                    evaluate()], correct again, all during final_integrate()
+     accepts()      error too large: [undo, shorten(), prepare(), predict, evaluate()], correct
+                    again, all during final_integrate()
      choose(), TimeStep::change(), order_output()
 
-   After prepare(), shorten_loads() and choose() a new integrator is needed.
+   After prepare(), shorten() and choose() a new integrator is needed.
 
    Nothing else in LAMMPS has used the step at this point: only this fix moves atoms, and the forces
    of other fixes are functions of positions and velocities (Forces).  Neighbor lists of the first
@@ -116,10 +116,8 @@ class Tolerance : protected Pointers {
   /// After all bodies are corrected: false if the step has failed and must be repeated.
   /// Collective.
   bool accepts();
-  /// Histories restored to the beginning of the step get the loads, then the length of the next
-  /// try.
-  void shorten_loads();
-  void shorten_step();
+  /// Histories restored to the beginning of the step get the loads of the next try, LAMMPS its length.
+  void shorten();
   /// Forces of the next try at the present positions into atom->f, energies and virials as in the
   /// present step.  vflag: of LAMMPS when the step began.
   void evaluate(int vflag);
@@ -162,7 +160,6 @@ class Tolerance : protected Pointers {
   double largest_speed() const;
   double limit_of_motion() const;
   double farthest_step(double speed) const;
-  double next_output(double step, double now) const;
   double even(double step, double now) const;
   /// In the units of the user.
   double unit_of_error() const { return control.energy ? force->mvv2e : 1.0; }
@@ -170,7 +167,6 @@ class Tolerance : protected Pointers {
   void include(const Integrator &integrator, int ibody, const Load &load, StepErrors one);
   double first_step() const;
   void begin_run();
-  void refuse_lost() const;
   void refuse_frozen() const;
 };
 
