@@ -110,27 +110,21 @@ int Extended::has_dipole(int i) const
 
 Extended::Own Extended::own(int i, double mass) const
 {
-  Own mine = {shape_of(i), has_dipole(i), {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}};
+  Own mine = {shape_of(i), has_dipole(i), {}, {0.0, 0.0, 0.0, 1.0}, {}};
   if (mine.shape == SPHERE)
     sphere_moments(mass, atom->radius ? atom->radius[i] : 0.0, mine.moments);
   else if (mine.shape != POINT)
     read_bonus(i, mass, mine);
   if (mine.shape == SPHERE && atom->quat) from_lammps(atom->quat[i], mine.q);
-  return mine;
-}
-
-/// Angular momentum of the atom itself in the atom style.
-void Extended::rate(int i, const Own &mine, double *momentum_space) const
-{
-  std::fill_n(momentum_space, 3, 0.0);
   if (mine.shape == ELLIPSOID || mine.shape == TRIANGLE) {
-    if (atom->angmom) std::copy_n(atom->angmom[i], 3, momentum_space);
+    if (atom->angmom) std::copy_n(atom->angmom[i], 3, mine.momentum);
   } else if (mine.shape != POINT && atom->omega) {
     double a[9];
     rotation_matrix(mine.q, 1.0, a);
-    own_angular_momentum(mine.moments, a, atom->omega[i], momentum_space);
+    own_angular_momentum(mine.moments, a, atom->omega[i], mine.momentum);
   }
-  if (domain->dimension == 2) momentum_space[0] = momentum_space[1] = 0.0;
+  if (domain->dimension == 2) mine.momentum[0] = mine.momentum[1] = 0.0;
+  return mine;
 }
 
 /// LAMMPS versions after 2025 have superellipsoids, whose moments differ from an ellipsoid.
@@ -208,7 +202,7 @@ void Extended::own_momenta(int i, double mass, double *inertia_space,
   rotation_matrix(mine.q, 1.0, a);
   std::fill_n(inertia_space, 9, 0.0);
   add_tensor(mine.moments, a, inertia_space);
-  rate(i, mine, angular_momentum_space);
+  std::copy_n(mine.momentum, 3, angular_momentum_space);
 }
 
 void Extended::attach(int i, double mass, const double *q_body)
@@ -307,13 +301,11 @@ bool Extended::match(int i, double mass, const BodyState &state) const
   if (record.kind == 0.0) return true;
 
   const Pose made = pose(record, i, state);
-  double momentum[3];
-  rate(i, mine, momentum);
   const double opposite[4] = {-made.q[0], -made.q[1], -made.q[2], -made.q[3]};
   return same(mine.moments, record.moments, 3) &&
       (mine.shape == POINT || (mine.shape == SPHERE && !atom->quat) || same(mine.q, made.q, 4) ||
        same(mine.q, opposite, 4)) &&
-      (!mine.dipole || same(atom->mu[i], made.mu, 3)) && same(momentum, made.momentum, 3);
+      (!mine.dipole || same(atom->mu[i], made.mu, 3)) && same(mine.momentum, made.momentum, 3);
 }
 
 /* ----------------------------------------------------------------------

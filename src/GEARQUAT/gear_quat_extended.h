@@ -114,6 +114,7 @@ class Extended : protected Pointers {
     int shape, dipole;
     double moments[3];
     double q[4];
+    double momentum[3];    ///< angular, in space
   };
 
   struct Pose {    ///< an atom as computed from its body
@@ -132,7 +133,6 @@ class Extended : protected Pointers {
   int shape_of(int atom) const;
   int has_dipole(int atom) const;
   Own own(int atom, double mass) const;
-  void rate(int atom, const Own &mine, double *momentum_space) const;
   Pose pose(const Record &record, int atom, const BodyState &state) const;
   void read_bonus(int atom, double mass, Own &mine) const;
   void find_corners(Site &site) const;

@@ -201,23 +201,17 @@ GivenBody GearQuat::given_at(const StatedMolecule &stated, const double *center,
                              const double *velocity, const double *wxyz)
 {
   const double q[4] = {wxyz[1], wxyz[2], wxyz[3], wxyz[0]};
-  double a[9], arm[3], turned[9];
+  double a[9], arm[3], t[9];
   rotation_matrix(q, dot4(q, q), a);
   to_space(a, stated.center, arm);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      double sum = 0.0;
-      for (int k = 0; k < 3; ++k)
-        for (int l = 0; l < 3; ++l) sum += a[3 * k + i] * stated.inertia[3 * k + l] * a[3 * l + j];
-      turned[3 * i + j] = sum;
-    }
+  tensor_to_space(a, stated.inertia, t);
   GivenBody given = GivenBody();
   given.mass = stated.mass;
   for (int k = 0; k < 3; ++k) {
     given.center[k] = center[k] + arm[k];
     given.velocity[k] = velocity[k];
   }
-  const double tensor[6] = {turned[0], turned[4], turned[8], turned[1], turned[2], turned[5]};
+  const double tensor[6] = {t[0], t[4], t[8], t[1], t[2], t[5]};
   std::copy_n(tensor, 6, given.inertia);
   return given;
 }

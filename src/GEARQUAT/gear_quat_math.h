@@ -141,6 +141,15 @@ inline void to_space(const double a[9], const double *body, double *space)
   space[2] = a[2] * body[0] + a[5] * body[1] + a[8] * body[2];
 }
 
+/// out = A^T t A, a tensor (row-major) in space from its components in the body.
+inline void tensor_to_space(const double a[9], const double *t, double *out)
+{
+  for (int n = 0; n < 9; ++n) {
+    out[n] = 0.0;
+    for (int i = 0; i < 9; ++i) out[n] += a[i / 3 * 3 + n / 3] * t[i] * a[i % 3 * 3 + n % 3];
+  }
+}
+
 /// Project q onto |q| = 1, Eq. 3.
 inline void project_norm(double *q)
 {

@@ -39,12 +39,7 @@ struct Arms {
   {
     Arms out = {number, {}};
     to_space(axes, sums.arm, out.sums.arm);
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b)
-        for (int i = 0; i < 3; ++i)
-          for (int j = 0; j < 3; ++j)
-            out.sums.products[3 * a + b] +=
-                axes[3 * i + a] * sums.products[3 * i + j] * axes[3 * j + b];
+    tensor_to_space(axes, sums.products, out.sums.products);
     return out;
   }
 };

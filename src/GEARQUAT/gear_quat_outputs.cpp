@@ -6,6 +6,7 @@
 #include "gear_quat_outputs.h"
 
 #include "gear_quat_ranks.h"
+#include "gear_quat_shapes.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -121,15 +122,11 @@ std::vector<GivenLine> Outputs::lines() const
     std::copy_n(&row[VELOCITY], 3, body.velocity);
     std::copy_n(&row[ANGULAR_MOMENTUM], 3, body.angular_momentum_space);
     std::copy_n(&row[IMAGE], 3, body.image);
-
-    // A^T I A, where the rows of A are the principal axes; xx yy zz xy xz yz
-
-    static constexpr int FIRST[6] = {0, 1, 2, 0, 0, 1}, SECOND[6] = {0, 1, 2, 1, 2, 2};
-    double a[9];
+    double a[9], t[9] = {};
     rotation_matrix(q, dot4(q, q), a);
-    for (int m = 0; m < 6; ++m)
-      for (int k = 0; k < 3; ++k)
-        body.inertia[m] += rigid.inertia[k] * a[3 * k + FIRST[m]] * a[3 * k + SECOND[m]];
+    add_tensor(rigid.inertia, a, t);
+    const double tensor[6] = {t[0], t[4], t[8], t[1], t[2], t[5]};
+    std::copy_n(tensor, 6, body.inertia);
     made.push_back({bodies.body_at(ibody).id, body});
   }
   return made;
