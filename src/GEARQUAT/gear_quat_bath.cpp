@@ -274,12 +274,12 @@ Load Bath::acting(int ibody) const
    a step
 ------------------------------------------------------------------------- */
 
-void Bath::take_random_step(const Integrator &integrator)
+void Bath::take_random_half(const Integrator &integrator, int half)
 {
   if (!words.is_random()) return;
   temperature.aim(update->ntimestep);
   if (acts()) measure();
-  const RandomStep step(integrator.step(), words.damp, temperature.line.kt);
+  const RandomStep step(0.5 * integrator.step(), words.damp, temperature.line.kt);
   const int dimension = domain->dimension;
   for (const auto *list : {&bodies.points, &bodies.tops})
     for (const int ibody : *list) {
@@ -290,7 +290,7 @@ void Bath::take_random_step(const Integrator &integrator)
         changes[3 + k] = temperature.has(ibody, ROTATION) && body.rigid.turns_about(k, dimension);
       }
       BodyState &state = bodies.change_state(ibody);
-      const auto normal = normal_numbers(words.seed, update->ntimestep, body.id);
+      const auto normal = normal_numbers(words.seed, 2 * update->ntimestep + half, body.id);
       const auto flow = temperature.has_flow() ? temperature.flow_at(ibody)
                                                : std::array<double, 3>();
       for (int k = 0; k < 3; ++k) state.velocity[k] -= flow[k];
@@ -299,6 +299,7 @@ void Bath::take_random_step(const Integrator &integrator)
       if (ibody < bodies.nowned()) randomly_taken -= gained;
       integrator.set_velocities(body.rigid, box.scaled(state), acting(ibody),
                                 bodies.history(ibody));
+      bodies.update_frame(ibody);
     }
 }
 

@@ -69,8 +69,9 @@ class Bath : protected Pointers {
 
   // in a step
 
-  /// Random changes of momenta, before the step of the integrator.
-  void take_random_step(const Integrator &integrator);
+  /// Random changes of momenta during half a step, before (half 0) and after the step of the
+  /// integrator.
+  void take_random_half(const Integrator &integrator, int half);
   /// Histories are predicted.
   void predict(const Integrator &integrator);
   /// Computes friction and rates from the present states and loads.
@@ -146,11 +147,11 @@ class Bath : protected Pointers {
   bool strong = false;         ///< the friction of this step is taken implicitly
   bool same_bodies = true;     ///< no insertion or removal in this step
   enum { OF_BOX = 2 };
-  double xi[3] = {};                      ///< xi_1 of the chains
-  Friction of_all;                        ///< of a body without masks, in the current pass
-  double cold[2] = {};                    ///< time that the parts have been cold
-  bool warned[2] = {};                    ///< of that
-  std::string told;                       ///< last message of the degrees of freedom
+  double xi[3] = {};                           ///< xi_1 of the chains
+  Friction of_all;                             ///< of a body without masks, in the current pass
+  double cold[2] = {};                         ///< time that the parts have been cold
+  bool warned[2] = {};                         ///< of that
+  std::string told;                            ///< last message of the degrees of freedom
   std::vector<Integrator::Pending> pending;    ///< in correct()
 
   // the start: 2K, which drives a chain from the start to each node, and the rate of the heat

@@ -7,18 +7,18 @@
 
      p' = F - p/tau + sqrt(2 m kT/tau) dW/dt,   L_i' = N_i - L_i/tau + sqrt(2 I_i kT/tau) dW_i/dt
 
-   along the principal axes i.  Between two steps of h without friction, every momentum takes the
-   exact step of its Ornstein-Uhlenbeck process, with independent normal numbers g:
+   along the principal axes i.  Before and after a step of h without friction, every momentum takes
+   the exact step of h/2 of its Ornstein-Uhlenbeck process, with independent normal numbers g:
 
-     p <- c p + sqrt((1 - c^2) m kT) g,   c = exp(-h/tau)
+     p <- c p + sqrt((1 - c^2) m kT) g,   c = exp(-h/(2 tau))
 
    With velocity Verlet this is the splitting OVRVO, whose averages have errors of order h^2 at any
    damping (B. Leimkuhler and C. Matthews, J. Chem. Phys. 138, 174102 (2013); for rigid bodies
    R. L. Davidchack, T. E. Ouldridge and M. V. Tretyakov, J. Chem. Phys. 142, 144114 (2015)).
 
-   The numbers g are a function of seed, step and body, so they depend neither on the ranks nor on
-   the order of bodies: Philox4x32-10 (J. K. Salmon et al., Parallel random numbers: as easy as 1, 2,
-   3, Proc. SC11 (2011)) and the transform of Box and Muller. */
+   The numbers g are a function of seed, half of a step and body, so they depend neither on the ranks
+   nor on the order of bodies: Philox4x32-10 (J. K. Salmon et al., Parallel random numbers: as easy
+   as 1, 2, 3, Proc. SC11 (2011)) and the transform of Box and Muller. */
 
 #ifndef GEAR_QUAT_LANGEVIN_H
 #define GEAR_QUAT_LANGEVIN_H

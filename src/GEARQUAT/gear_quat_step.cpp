@@ -503,7 +503,7 @@ void Step::begin(int vflag, double **f)
   others.watch_velocities(phase == Phase::BETWEEN);    // in a run with `pre no` of all sites
   if (tolerance) tolerance->begin_step();
   if (tolerance) bath.keep();
-  bath.take_random_step(*integrator);
+  bath.take_random_half(*integrator, 0);
   predict(f);
   place_prediction();
   phase = Phase::BEGUN;
@@ -660,6 +660,7 @@ void Step::accept(double **f)
   }
   if (!bodies.fresh.empty()) bodies.take_in_fresh();
   bath.follow_changes(h);
+  bath.take_random_half(*integrator, 1);
 }
 
 /// Tests a corrected state.
