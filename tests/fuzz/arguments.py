@@ -82,7 +82,7 @@ def values_of(rng, row):
     if row.kind == "mask":
         return [rng.choice(("1", "*", "1*")), *(rng.choice(("on", "off")) for _ in range(3))]
     if row.kind == "name":
-        return [{"infile": "bodies", "mol": "two"}[row.name]]
+        return [{"infile": "bodies", "mol": "two", "points": "all"}[row.name]]
     number = [rng.choice(("1e-5", "0.1", "1"))] * row.arguments
     return number + (rng.choice(([], [rng.choice(row.options)])) if row.options else [])
 

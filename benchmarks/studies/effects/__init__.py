@@ -14,7 +14,7 @@ from . import plan
 from .runs import measure
 
 #: functions for output, which are not part of the work of a step
-_ASIDE = re.compile(r"BodyTable::|::(forces_changed|rounding)\(")
+_ASIDE = re.compile(r"Outputs::|::(forces_changed|rounding)\(")
 #: largest relative difference between the cost of an effect on the ladder and its cost alone.  It is not zero, because
 #: the control of the step takes branches that depend on the data: repeated runs gave 0.0098 to 0.0101.
 MOST_APART = 1.5e-2
