@@ -35,6 +35,8 @@ Start::Start(LAMMPS *lmp, const std::vector<Step *> &fixes, double h) :
 {
 }
 
+Start::~Start() = default;    // here, where the study of effects counts a start
+
 std::vector<const Fix *> Start::owners() const
 {
   std::vector<const Fix *> fixes;

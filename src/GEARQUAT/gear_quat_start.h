@@ -23,6 +23,7 @@ class Start : protected Pointers {
  public:
   /// Of all fixes that start together, with one set of nodes.  h: the step of the histories.
   Start(LAMMPS *lmp, const std::vector<Step *> &fixes, double h);
+  ~Start() override;
 
   /// Computes derivatives consistent with the trajectory; if forces cannot be followed, the
   /// derivatives from the present loads, with a message on rank 0.  After the call atoms are as

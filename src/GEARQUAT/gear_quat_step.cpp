@@ -202,7 +202,7 @@ std::vector<Step *> Step::start(double **f, double **torque)
       one->note_start();
     }
   }
-  if (starts == 0) together.clear();
+  if (starts == 0) return {};
   return together;
 }
 
