@@ -116,7 +116,10 @@ std::array<int, 3> Sites::image_of(const Site &site) const
 /// Computes the displacements of the images in the present box.  False if all images are zero.
 bool Sites::find_ways()
 {
-  if (images.empty() || (images.size() == 1 && images[0] == std::array<int, 3>{})) return false;
+  const auto is_home = [](const std::array<int, 3> &image) {
+    return image[0] == 0 && image[1] == 0 && image[2] == 0;
+  };
+  if (std::all_of(images.begin(), images.end(), is_home)) return false;
   ways.resize(images.size());
   for (size_t m = 0; m < images.size(); ++m) through(domain->h, images[m].data(), ways[m].data());
   return true;
