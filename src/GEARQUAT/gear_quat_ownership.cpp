@@ -290,7 +290,7 @@ void Ownership::update()
       for (size_t i = atom->nlocal; i < assigned.size(); ++i) assigned[i].owned = -1;
       if ((bigint) large.size() < bodies.number()) {
         share_owners();
-        send(nullptr, 0, true);
+        send(Content::GHOSTS);
       }
     }
     bodies.list();
@@ -325,7 +325,7 @@ void Ownership::share_owners()
     const int owner = in_body(i) ? atom->map(assigned[i].owner) : -1;
     if (owner >= atom->nlocal) sought[owner] = 1.0;
   }
-  add_from_ghosts(sought.data(), 1, true);
+  add_from_ghosts(Content::OF_ATOMS, sought.data(), 1);
   for (int i = 0; i < atom->nlocal; ++i) {
     Assigned &one = assigned[i];
     if (sought[i] > 0.0 && one.owned >= 0 && !bodies.is_large(one.owned)) one.shared = one.owned;
@@ -402,7 +402,7 @@ void Ownership::spread_moved()
 
 void Ownership::sum(double *values, int size)
 {
-  if (any_ghosts) add_from_ghosts(values, size, false);
+  if (any_ghosts) add_from_ghosts(Content::OF_BODIES, values, size);
   if (bodies.large.empty()) return;
   std::vector<double> part(bodies.large.size() * size), all(part.size());
   for (size_t n = 0; n < bodies.large.size(); ++n)
@@ -483,18 +483,18 @@ int Ownership::packed_size(int i) const
    messages from atoms to their ghosts and back: the data of atoms, or of the bodies that they own
 ------------------------------------------------------------------------- */
 
-/// Without values: the IDs of bodies, and the bodies themselves to ghosts of shared owner atoms.
-void Ownership::send(double *values, int size, bool from_atoms)
+/// GHOSTS: the IDs of bodies, and the bodies themselves to ghosts of shared owner atoms.
+void Ownership::send(Content what, double *values, int size)
 {
-  numbers = values, width = size, of_atoms = from_atoms;
+  content = what, numbers = values, width = size;
   compare_calls(world);
   comm->forward_comm(fix, size);
 }
 
 /// Adds the values of ghosts to the values of their owners.
-void Ownership::add_from_ghosts(double *values, int size, bool from_atoms)
+void Ownership::add_from_ghosts(Content what, double *values, int size)
 {
-  numbers = values, width = size, of_atoms = from_atoms;
+  content = what, numbers = values, width = size;
   compare_calls(world);
   comm->reverse_comm(fix, size);
 }
@@ -502,7 +502,7 @@ void Ownership::add_from_ghosts(double *values, int size, bool from_atoms)
 /// The numbers of an atom or of the body that it owns, null if it shares none.
 double *Ownership::numbers_of(int i) const
 {
-  const int n = of_atoms ? i : assigned[i].shared;
+  const int n = content == Content::OF_ATOMS ? i : assigned[i].shared;
   return n < 0 ? nullptr : numbers + (size_t) n * width;
 }
 
@@ -510,7 +510,7 @@ int Ownership::pack_forward(int n, const int *list, double *buf)
 {
   double *to = buf;
   for (int i = 0; i < n; ++i) {
-    if (numbers) {
+    if (content != Content::GHOSTS) {
       if (const double *mine = numbers_of(list[i])) to = std::copy_n(mine, width, to);
       continue;
     }
@@ -526,7 +526,7 @@ void Ownership::unpack_forward(int n, int first, const double *buf)
 {
   const int size = bodies.packed_size(Bodies::OF_GHOST);
   for (int i = first; i < first + n; ++i) {
-    if (numbers) {
+    if (content != Content::GHOSTS) {
       double *mine = numbers_of(i);
       if (mine) std::copy_n(buf, width, mine), buf += width;
       continue;

@@ -69,7 +69,7 @@ class Ownership : protected Pointers {
     return mass_of(atom) != assigned[atom].mass && !bodies.body_at(index[atom]).from_file;
   }
   /// label: of all owned atoms, followed by their ghosts, which receive the same.  Collective.
-  void spread_labels(std::vector<double> &label) { send(label.data(), 1, true); }
+  void spread_labels(std::vector<double> &label) { send(Content::OF_ATOMS, label.data(), 1); }
 
   /// Positions and orientations of extended atoms in their bodies.
   Extended &extended() { return records; }
@@ -129,7 +129,8 @@ class Ownership : protected Pointers {
   template <class Values> void spread(std::vector<Values> &column)
   {
     if (any_ghosts)
-      send(reinterpret_cast<double *>(column.data()), sizeof(Values) / sizeof(double), false);
+      send(Content::OF_BODIES, reinterpret_cast<double *>(column.data()),
+           sizeof(Values) / sizeof(double));
   }
 
   // functions called by the fix
@@ -179,11 +180,12 @@ class Ownership : protected Pointers {
   /// Doubles of an atom before its record as an extended atom, the size of its body, and that body.
   static constexpr int ATOM_SIZE = offsetof(Assigned, owned) / sizeof(double);
 
-  // the data in a message: numbers of all atoms or of all bodies, or, without numbers, ghost bodies
+  // the data in a message: the IDs of bodies and ghost bodies, or numbers of all atoms or all bodies
 
+  enum class Content { GHOSTS, OF_ATOMS, OF_BODIES };
+  Content content = Content::GHOSTS;
   double *numbers = nullptr;
   int width = 0;    ///< of an atom or a body
-  bool of_atoms = false;
 
   void clear(bool with_extended = false);
   void count();
@@ -199,8 +201,8 @@ class Ownership : protected Pointers {
   void share_large();
   void promote();
 
-  void send(double *values, int size, bool from_atoms);
-  void add_from_ghosts(double *values, int size, bool from_atoms);
+  void send(Content what, double *values = nullptr, int size = 0);
+  void add_from_ghosts(Content what, double *values, int size);
   void sum(double *values, int size);
   double *numbers_of(int atom) const;
 };

@@ -461,22 +461,15 @@ void Sites::add_arm_virial(double **f, ExactSum *sums, double scale) const
       });
 }
 
-/// Mean of the arms of all sites of each body, owned and ghost, in `force`.  Collective.
-std::vector<Load> Sites::centroids()
+/// Mean of the arms of all sites of each body, owned and ghost.  Collective.
+std::vector<std::array<double, 3>> Sites::centroids()
 {
-  std::vector<Load> means(bodies.nhere());
-  sum_over_sites(
-      [](int) {
-        return Load();
-      },
-      [this](Load &sum, const Site &site, const double *arm) {
-        if (!arm) return;
-        const tagint natoms = bodies.body_at(site.body).natoms;
-        for (int k = 0; k < 3; ++k) sum.force[k] += arm[k] / natoms;
-      },
-      [&means](int ibody, const Load &sum) {
-        means[ibody] = sum;
-      });
+  std::vector<std::array<double, 3>> means(bodies.nhere());
+  for (const Site &site : sites) {
+    double arm[3];
+    to_space(bodies.axes(site.body), site.arm_body, arm);
+    for (int k = 0; k < 3; ++k) means[site.body][k] += arm[k] / bodies.body_at(site.body).natoms;
+  }
   ownership.sum(means);
   ownership.spread(means);
   return means;
@@ -489,7 +482,8 @@ void Sites::visit_constraint_forces(double **f, bool all, Turning turning,
     double linear[3], angular[3];    // in space
   };
   ownership.spread(bodies.change_loads());
-  const std::vector<Load> means = all ? centroids() : std::vector<Load>();
+  std::vector<std::array<double, 3>> means;
+  if (all) means = centroids();
   sum_over_sites(
       [this, turning](int ibody) {
         const RigidBody &rigid = bodies.rigid_of(ibody);
@@ -508,7 +502,7 @@ void Sites::visit_constraint_forces(double **f, bool all, Turning turning,
         ConstraintForce constraint = {};
         double *lacking = constraint.force[0], *arm_space = constraint.arm[0];
         if (arm) std::copy_n(arm, 3, arm_space);
-        if (all) std::copy_n(means[site.body].force, 3, constraint.centroid);
+        if (all) std::copy_n(means[site.body].begin(), 3, constraint.centroid);
         double tangential[3], radial[3] = {0.0, 0.0, 0.0};
         cross3(acceleration.angular, arm_space, tangential);
         if (turning == Turning::YES) {

@@ -150,7 +150,7 @@ class Sites : protected Pointers {
   template <class Start, class Add, class Finish>
   void sum_over_sites(Start start, Add add, Finish finish) const;
   void gather(const double *forces, double **torque);
-  std::vector<Load> centroids();
+  std::vector<std::array<double, 3>> centroids();
 };
 
 }    // namespace LAMMPS_NS::GearQuat
