@@ -308,7 +308,8 @@ std::string Report::advice() const
     if (other->time_integrate &&
         !std::count(moving.begin(), moving.end(), group->names[other->igroup]))
       moving.emplace_back(group->names[other->igroup]);
-  add(all[1], fmt::format("among {} atoms that no fix moves", all[3]),
+  // in a box that moves, these forces count in the pressure
+  add(args.pressure.any() ? 0 : all[1], fmt::format("among {} atoms that no fix moves", all[3]),
       fmt::format("group still subtract all {}; neigh_modify exclude group still still",
                   utils::join_words(moving, " ")));
   if (!meets_itself()) add(all[2], "within bodies and do not move them", exclude_own());
@@ -359,19 +360,24 @@ bool Report::meets_itself() const
 
 std::string Report::exclude_own() const
 {
-  const std::string name = group->names[fix->igroup];
+  std::string name = group->names[fix->igroup], before;
+  if (!args.points.empty()) {    // flexible molecules keep the forces between their atoms
+    before = fmt::format("group rigid subtract {} {}; ", name, args.points);
+    name = "rigid";
+  }
   switch (args.bodystyle) {
     case Arguments::BodyStyle::MOLECULE:
-      return "neigh_modify exclude molecule/intra " + name;
+      return before + "neigh_modify exclude molecule/intra " + name;
     case Arguments::BodyStyle::SINGLE:
-      return fmt::format("neigh_modify exclude group {0} {0}", name);
+      return before + fmt::format("neigh_modify exclude group {0} {0}", name);
     case Arguments::BodyStyle::GROUP: {
       std::string line = "neigh_modify";
       for (const auto &body : args.groups) line += fmt::format(" exclude group {0} {0}", body);
       return line;
     }
     default:
-      return "neigh_modify exclude molecule/intra " + name + ", with a molecule ID for every body";
+      return before + "neigh_modify exclude molecule/intra " + name +
+          ", with a molecule ID for every body";
   }
 }
 

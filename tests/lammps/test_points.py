@@ -105,6 +105,14 @@ def test_the_same_motion_as_with_a_variable(simulate):
     assert (end == other).all()
 
 
+def test_proposed_exclusions_leave_flexible_molecules_alone(simulate):
+    deck = DECK.replace("check no exclude molecule/intra all", "check no").replace("report no", "")
+    said = "group rigid subtract all loose; neigh_modify exclude molecule/intra rigid"
+    assert said in simulate("points loose", deck=deck, run="run 0")[0].words
+    mended = deck.replace("fix move", said.replace("; ", "\n") + "\nfix move")
+    assert "neigh_modify exclude" not in simulate("points loose", deck=mended, run="run 0")[0].words.partition("Setting up")[2]
+
+
 def test_energy_to_the_order_of_the_method(simulate):
     decks = [dict(dt=dt, run=f"run {round(0.8 / dt)}", every=1) for dt in (0.016, 0.008)]
     errors = [np.ptp(energy(simulate("points loose values 7", **deck)[0])) for deck in decks]
