@@ -211,6 +211,7 @@ void FixGearQuat::setup(int vflag)
   show_bodies();
   if (first) report_scene(lmp, this, args, fleet, bodies, ownership, sites);
   atoms_are_free = false;
+  if (!args.mol.empty()) loose_atoms = ownership.loose_atoms(groupbit);
 }
 
 void FixGearQuat::count_rows()
@@ -283,6 +284,13 @@ void FixGearQuat::post_run()
   }
   step.end_run();
   driven_box.end_run();
+  const bigint more = args.mol.empty() ? 0 : ownership.loose_atoms(groupbit) - loose_atoms;
+  if (more > 0 && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat {0}: other fixes have inserted {1} atoms into its group that are "
+                   "in no body, so this fix does not move them; a fix that inserts molecules of "
+                   "template {2} as bodies needs its keyword rigid {0}",
+                   id, more, args.mol);
 }
 
 /// Virial of the constraint forces, at the pose at which the forces were evaluated.

@@ -140,6 +140,16 @@ void Bath::begin_run(bool anew, double h)
     refuse_bodies();
     tell_freedoms();
   }
+  if (words.is_random()) {
+    constexpr double TOO_FAST = 1.02;
+    const double ratio = 0.5 * std::fabs(h) / words.damp, faster = ratio / std::tanh(ratio);
+    if (faster > TOO_FAST && comm->me == 0)
+      error->warning(FLERR,
+                     "Fix gear/quat langevin: with a damping time of {:.3g} time steps averages "
+                     "are right, but free bodies diffuse and drift {:.3g} times too fast; for "
+                     "motion in time use a damping time of at least two time steps",
+                     words.damp / std::fabs(h), faster);
+  }
   if (thermostats > 0) {
     if (temperature.has_flow() && words.length > 1)
       error->all(FLERR,
@@ -278,29 +288,36 @@ void Bath::take_random_half(const Integrator &integrator, int half)
 {
   if (!words.is_random()) return;
   temperature.aim(update->ntimestep);
-  if (acts()) measure();
   const RandomStep step(0.5 * integrator.step(), words.damp, temperature.line.kt);
-  const int dimension = domain->dimension;
-  for (const auto *list : {&bodies.points, &bodies.tops})
-    for (const int ibody : *list) {
-      const Body &body = bodies.body_at(ibody);
-      std::array<bool, 6> changes;
-      for (int k = 0; k < 3; ++k) {
-        changes[k] = temperature.has(ibody, TRANSLATION, k);
-        changes[3 + k] = temperature.has(ibody, ROTATION) && body.rigid.turns_about(k, dimension);
-      }
-      BodyState &state = bodies.change_state(ibody);
-      const auto normal = normal_numbers(words.seed, 2 * update->ntimestep + half, body.id);
-      const auto flow = temperature.has_flow() ? temperature.flow_at(ibody)
-                                               : std::array<double, 3>();
-      for (int k = 0; k < 3; ++k) state.velocity[k] -= flow[k];
-      const double gained = step.take(body.rigid, changes, normal, state);
-      for (int k = 0; k < 3; ++k) state.velocity[k] += flow[k];
-      if (ibody < bodies.nowned()) randomly_taken -= gained;
-      integrator.set_velocities(body.rigid, box.scaled(state), acting(ibody),
-                                bodies.history(ibody));
-      bodies.update_frame(ibody);
+  const auto for_moved = [this](auto act) {
+    for (const auto *list : {&bodies.points, &bodies.tops})
+      for (const int ibody : *list) act(ibody);
+  };
+  for_moved([&](int ibody) {
+    const Body &body = bodies.body_at(ibody);
+    std::array<bool, 6> changes;
+    for (int k = 0; k < 3; ++k) {
+      changes[k] = temperature.has(ibody, TRANSLATION, k);
+      changes[3 + k] =
+          temperature.has(ibody, ROTATION) && body.rigid.turns_about(k, domain->dimension);
     }
+    BodyState &state = bodies.change_state(ibody);
+    const auto normal = normal_numbers(words.seed, 2 * update->ntimestep + half, body.id);
+    const auto flow = temperature.has_flow() ? temperature.flow_at(ibody) : std::array<double, 3>();
+    for (int k = 0; k < 3; ++k) state.velocity[k] -= flow[k];
+    const double gained = step.take(body.rigid, changes, normal, state);
+    for (int k = 0; k < 3; ++k) state.velocity[k] += flow[k];
+    if (ibody < bodies.nowned()) randomly_taken -= gained;
+    bodies.update_frame(ibody);
+  });
+  if (acts()) {    // accelerations of bodies and box depend on velocities
+    measure();
+    box.seed_local(integrator.step(), 3, xi[OF_BOX]);
+  }
+  for_moved([&](int ibody) {
+    integrator.set_velocities(bodies.rigid_of(ibody), box.scaled(bodies.state_of(ibody)),
+                              acting(ibody), bodies.history(ibody));
+  });
 }
 
 void Bath::predict(const Integrator &integrator)

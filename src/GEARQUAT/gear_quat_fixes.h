@@ -13,8 +13,8 @@
 #ifndef LMP_GEAR_QUAT_FIXES_H
 #define LMP_GEAR_QUAT_FIXES_H
 
-#include "gear_quat_stability.h"
 #include "gear_quat_sites.h"
+#include "gear_quat_stability.h"
 
 #include <string>
 #include <vector>

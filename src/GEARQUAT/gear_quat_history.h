@@ -314,9 +314,10 @@ class Kinematics {
                       double *rows) const
   {
     if (scheme.momentum()) {
-      set_momenta(body, state, rows);
+      set_momenta(body, state, load, rows);
       return;
     }
+    set_acceleration(body, load, rows);
     const int width = scheme.width(), quat = scheme.quaternion(), row = scheme.first() ? 0 : 1;
     double *rates = rows + width, *qddot = rates + width + quat;
     double omegadot_body[3], qdot[4], now[4], kept[4] = {};
@@ -387,9 +388,22 @@ class Kinematics {
   }
 
  private:
-  /// set_velocities() of formulation momentum: accelerations do not depend on velocities.
-  void set_momenta(const RigidBody &body, const BodyState &state, double *rows) const
+  /// The last row of velocity Verlet, of a center.
+  void set_acceleration(const RigidBody &body, const Load &load, double *rows) const
   {
+    double *seconds = rows + 2 * scheme.width();
+    for (int i = 0; i < 3 && scheme.is_verlet(); ++i)
+      seconds[Scheme::POSITION + i] = 0.5 * h * h * load.force[i] / body.mass;
+  }
+
+  /// set_velocities() of formulation momentum: accelerations depend on velocities by a friction only.
+  void set_momenta(const RigidBody &body, const BodyState &state, const Load &load,
+                   double *rows) const
+  {
+    double *seconds = rows + 2 * scheme.width();
+    set_acceleration(body, load, rows);
+    for (int i = 0; i < 3 && scheme.is_verlet(); ++i)
+      seconds[Scheme::ANGULAR_MOMENTUM + i] = 0.5 * h * h * load.torque_space[i];
     double momentum[3], *rates = rows + scheme.width();
     momentum_along_space(body, state, momentum);
     for (int i = 0; i < 3; ++i) {

@@ -212,6 +212,13 @@ struct AtomsOfBody {
 
 }    // namespace
 
+bigint Ownership::loose_atoms(int groupbit) const
+{
+  bigint here = 0;
+  for (int i = 0; i < atom->nlocal; ++i) here += (atom->mask[i] & groupbit) && !in_body(i);
+  return over_ranks(MPI_SUM, here, world);
+}
+
 Comparison Ownership::count_atoms(int groupbit) const
 {
   std::vector<tagint> owners;

@@ -42,10 +42,10 @@ def test_a_wall_sends_bodies_back_and_keeps_the_energy(fields):
 
 
 def test_a_thermostat_sets_the_temperature(fields):
-    result, log = fields("langevin", steps=20000, every=20)
+    result, log = fields("langevin", steps=10000, every=10)
     assert "start with known forces only (order 2)" in result.output
     assert log["Temp"][50:].mean() == pytest.approx(1.0, abs=0.03)
-    _, colder = fields("langevin", steps=20000, every=20, temperature=0.9)
+    _, colder = fields("langevin", steps=10000, every=10, temperature=0.9)
     assert colder["Temp"][50:].mean() == pytest.approx(0.9, abs=0.03)
 
 

@@ -230,6 +230,29 @@ def test_thermostats_with_a_bias(simulate, style):
     assert "WARNING" not in result.log
 
 
+@pytest.mark.parametrize("tau", [0.0001, 0.1])
+def test_pressure_keeps_the_conserved_quantity(simulate, tau):
+    """To second order at any damping: the accelerations of bodies and box follow the random velocities."""
+    changes = []
+    for dt in (0.04, 0.02):
+        result, _ = simulate(
+            side=8, z="0 8", words="iso 1.0 1.0 1.0", langevin=f"{T} {T} {tau} 4711", dt=dt, run=f"run {round(80 / dt)}", warm=0,
+            columns="vol", every=round(2 / dt),
+        )  # fmt: skip
+        table = result.thermo[-1]
+        changes.append(np.std(table["Econserve"]))
+        assert np.ptp(table["Volume"]) > 20
+    assert changes[0] / changes[1] > 2.5
+    assert changes[1] < 0.2
+
+
+@pytest.mark.parametrize("tau, warned", [(0.05, True), (0.2, False)])
+def test_fast_diffusion_is_warned_of(simulate, tau, warned):
+    """The factor of diffusion is x coth x with x = h/(2 tau); 1.08 here."""
+    result, _ = simulate(langevin=f"{T} {T} {tau} 4711", dt=0.05, warm=0, run="run 10")
+    assert ("free bodies diffuse and drift 1.08 times too fast" in result.words) == warned
+
+
 # --- the same trajectory --------------------------------------------------------------------------
 
 
