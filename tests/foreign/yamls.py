@@ -53,6 +53,10 @@ NOT_TRIED = (
         "refused beside bodies, or moves by chance: tried among the other styles",
     ),
     (
+        r"rigid_np[ht](_small)?",
+        "the barostat has other equations: tried in tests/lammps/test_pressure_company.py and others",
+    ),
+    (
         r"(momentum|heat|temp)_?.*",
         "fix rigid does not follow such changes of velocities: tried among the other styles",
     ),

@@ -6,7 +6,7 @@ from gearquat_analysis.tables import rounded
 
 #: messages of LAMMPS and of the fix if atoms have left the box or are not where their rank expects them
 _GONE = re.compile(
-    r"Lost atoms|of its (\d+ )?atoms left|Out of range atoms|atoms? .*missing|Non-numeric (pressure|atom coords)"
+    r"Lost atoms|of its (\d+ )?atoms left|has lost some of its atoms|Out of range atoms|atoms? .*missing|Non-numeric (pressure|atom coords)"
 )
 
 
