@@ -338,10 +338,11 @@ std::vector<tagint> Arguments::body_ids(int groupbit) const
   if (igroup < 0) error->all(FLERR, "Fix gear/quat points: group ID {} does not exist", points);
   const int bit = group->bitmask[igroup];
   auto ids = ids_by_style({groupbit, bit});
-  tagint worst[2] = {0, 0};    // an ID, and an atom
+  tagint worst[3] = {0, 0, 0};    // an ID, an atom outside of the group, and the largest point
   for (int i = 0; i < atom->nlocal; ++i) {
     worst[0] = std::max(worst[0], ids[i]);
     if (!(atom->mask[i] & bit)) continue;
+    worst[2] = std::max(worst[2], atom->tag[i]);
     if (!(atom->mask[i] & groupbit)) worst[1] = atom->tag[i];
     ids[i] = POINTS + atom->tag[i];
   }
@@ -350,6 +351,10 @@ std::vector<tagint> Arguments::body_ids(int groupbit) const
     error->all(FLERR,
                "Fix gear/quat points: body {} has the ID of a point; IDs of bodies are up to {}",
                all[0], POINTS);
+  if (all[2] > MAXTAGINT - POINTS)
+    error->all(FLERR,
+               "Fix gear/quat points: atom {} has too large an ID for a point; use reset_atoms id",
+               all[2]);
   if (all[1])
     error->all(
         FLERR,

@@ -141,9 +141,8 @@ void Bath::begin_run(bool anew, double h)
     tell_freedoms();
   }
   if (words.is_random()) {
-    constexpr double TOO_FAST = 1.02;
     const double ratio = 0.5 * std::fabs(h) / words.damp, faster = ratio / std::tanh(ratio);
-    if (faster > TOO_FAST && comm->me == 0)
+    if (words.damp < 2.0 * std::fabs(h) && comm->me == 0)
       error->warning(FLERR,
                      "Fix gear/quat langevin: with a damping time of {:.3g} time steps averages "
                      "are right, but free bodies diffuse and drift {:.3g} times too fast; for "
@@ -284,15 +283,17 @@ Load Bath::acting(int ibody) const
    a step
 ------------------------------------------------------------------------- */
 
+template <class Act> void Bath::for_moved(Act act)
+{
+  for (const auto *list : {&bodies.points, &bodies.tops})
+    for (const int ibody : *list) act(ibody);
+}
+
 void Bath::take_random_half(const Integrator &integrator, int half)
 {
   if (!words.is_random()) return;
   temperature.aim(update->ntimestep);
   const RandomStep step(0.5 * integrator.step(), words.damp, temperature.line.kt);
-  const auto for_moved = [this](auto act) {
-    for (const auto *list : {&bodies.points, &bodies.tops})
-      for (const int ibody : *list) act(ibody);
-  };
   for_moved([&](int ibody) {
     const Body &body = bodies.body_at(ibody);
     std::array<bool, 6> changes;
@@ -330,10 +331,6 @@ void Bath::predict(const Integrator &integrator)
 void Bath::correct(const Integrator &integrator, int passes)
 {
   const double h = integrator.step();
-  const auto for_moved = [this](auto act) {
-    for (const auto *list : {&bodies.points, &bodies.tops})
-      for (const int ibody : *list) act(ibody);
-  };
   begin_passes(h);
   for_moved([&](int ibody) {
     pending[ibody] =
@@ -351,12 +348,12 @@ void Bath::correct(const Integrator &integrator, int passes)
       const auto correct_pass = [&](const Load &load, const auto &friction) {
         integrator.correct_pass(rigid, load, friction, rows, pending[ibody]);
       };
-      const bool masked = bodies.body_at(ibody).off != 0 || temperature.has_flow();
-      if (box.moves() && masked)
+      const bool has_own = bodies.body_at(ibody).off != 0 || temperature.has_flow();
+      if (box.moves() && has_own)
         correct_pass(box.scaled(bodies.acting(ibody)), friction_of(ibody, box.friction()));
       else if (box.moves())
         correct_pass(box.scaled(bodies.load_of(ibody)), box.friction());
-      else if (masked)
+      else if (has_own)
         correct_pass(bodies.acting(ibody), friction_of(ibody, of_all));
       else
         correct_pass(bodies.load_of(ibody), of_all);

@@ -147,11 +147,11 @@ class Bath : protected Pointers {
   bool strong = false;         ///< the friction of this step is taken implicitly
   bool same_bodies = true;     ///< no insertion or removal in this step
   enum { OF_BOX = 2 };
-  double xi[3] = {};                           ///< xi_1 of the chains
-  Friction of_all;                             ///< of a body without masks, in the current pass
-  double cold[2] = {};                         ///< time that the parts have been cold
-  bool warned[2] = {};                         ///< of that
-  std::string told;                            ///< last message of the degrees of freedom
+  double xi[3] = {};      ///< xi_1 of the chains
+  Friction of_all;        ///< of a body without masks or a flow, in the current pass
+  double cold[2] = {};    ///< time that the parts have been cold
+  bool warned[2] = {};    ///< of that
+  std::string told;       ///< last message of the degrees of freedom
   std::vector<Integrator::Pending> pending;    ///< in correct()
 
   // the start: 2K, which drives a chain from the start to each node, and the rate of the heat
@@ -168,8 +168,9 @@ class Bath : protected Pointers {
   void note_setting();
   void refuse_bodies() const;
   void tell_freedoms();
-  /// The friction of all bodies, without what does not act on this one.
+  /// The friction of all bodies, without what does not act on this one, and relative to the flow.
   template <class Damper> Damper friction_of(int ibody, Damper found) const;
+  template <class Act> void for_moved(Act act);
   void sum_present();
   void note_friction();
   void settle_fresh(double h);

@@ -206,6 +206,31 @@ def write_data(path: Path, box: list[str], masses, atoms: list, velocities: list
     return path
 
 
+#: a template of a neutral molecule with a dipole moment of 0.3 and three moments of inertia
+TRIMER = """trimer
+
+3 atoms
+
+Coords
+
+1 0 0 0
+2 0.6 0 0
+3 0 0.7 0
+
+Types
+
+1 1
+2 1
+3 2
+
+Charges
+
+1 0.5
+2 -0.5
+3 0
+"""
+
+
 def water_data(
     path: Path,
     n: int = 3,

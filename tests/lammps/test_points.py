@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scenes import TRIMER
 
 DECK = """
 units lj
@@ -38,22 +39,6 @@ thermo {every}
 {run}
 write_dump all custom end id x y z vx vy vz modify sort id format float %.17g
 """
-RIGID = """rigid
-
-3 atoms
-
-Coords
-
-1 0 0 0
-2 0.6 0 0
-3 0 0.7 0
-
-Types
-
-1 1
-2 1
-3 2
-"""
 LOOSE = """loose
 
 2 atoms
@@ -78,7 +63,7 @@ Bonds
 @pytest.fixture
 def simulate(lmp_tree):
     """(words of the fix, settings of DECK) -> result, positions and velocities at the end."""
-    (lmp_tree.folder / "rigid.mol").write_text(RIGID)
+    (lmp_tree.folder / "rigid.mol").write_text(TRIMER)
     (lmp_tree.folder / "loose.mol").write_text(LOOSE)
 
     def run(words, ranks=1, **changes):
@@ -110,7 +95,8 @@ def test_proposed_exclusions_leave_flexible_molecules_alone(simulate):
     said = "group rigid subtract all loose; neigh_modify exclude molecule/intra rigid"
     assert said in simulate("points loose", deck=deck, run="run 0")[0].words
     mended = deck.replace("fix move", said.replace("; ", "\n") + "\nfix move")
-    assert "neigh_modify exclude" not in simulate("points loose", deck=mended, run="run 0")[0].words.partition("Setting up")[2]
+    _, mark, after = simulate("points loose", deck=mended, run="run 0")[0].words.partition("Setting up")
+    assert mark and "neigh_modify exclude" not in after
 
 
 def test_energy_to_the_order_of_the_method(simulate):
@@ -154,3 +140,5 @@ def test_refused(lmp_tree, simulate, words, said):
     group = deck.replace("fix move all gear/quat molecule " + words, "fix move some gear/quat molecule points loose")
     group = group.replace("timestep", "group some type 1 2\ntimestep")
     lmp_tree.refuse(group, "of group loose is not in the group of the fix")
+    large = deck.replace("gear/quat molecule " + words, "gear/quat molecule points loose ").replace("timestep", "set atom 1 mol 1000000001\ntimestep")
+    lmp_tree.refuse(large, "body 1000000001 has the ID of a point")
