@@ -102,12 +102,11 @@ keep_decks() {
   mv kept/examples/PACKAGES examples
   mv kept/bench .
   rm -rf kept
-  touch .decks .manual
+  touch .decks
 }
 
-# need_decks, need_manual: for a LAMMPS that an earlier version of this file fetched without them
+# need_decks: for a LAMMPS that an earlier version of this file fetched without them
 need_decks() { need_folders decks examples/PACKAGES bench; }
-need_manual() { need_folders manual doc/src; }
 
 # need_folders MARK FOLDER...: fetches the tree again for these folders, unless the file .MARK exists
 need_folders() {

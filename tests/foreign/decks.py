@@ -92,7 +92,7 @@ CANNOT = (
 INCOMPARABLE = (
     ("Resetting timestep size is not allowed", "another fix forbids a smaller step"),
 )
-#: the same for a deck with atom style line or tri whose results differ (doc/upstream/reports/triangles.md)
+#: the same for a deck with atom style line or tri whose results differ (doc/lammps_defects.md)
 TAKES_FOR_SPHERES = "fix rigid takes lines and triangles for spheres"
 
 

@@ -1,6 +1,6 @@
 """GEARQUAT as one of LAMMPS' packages: way (b) of the page about installing, by CMake and by the traditional make.
 
-These tests build LAMMPS without optimization, which takes minutes each; `tests/run upstream` runs them.
+These tests build LAMMPS without optimization, which takes minutes each; `tests/run installation` runs them.
 """
 
 from __future__ import annotations

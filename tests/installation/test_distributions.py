@@ -1,6 +1,6 @@
 """The distributions for pip: a wheel and a source distribution, each in a fresh environment.
 
-These tests take minutes, mostly for pip; `tests/run upstream` runs them.
+These tests take minutes, mostly for pip; `tests/run installation` runs them.
 """
 
 from __future__ import annotations
