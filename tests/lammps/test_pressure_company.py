@@ -190,18 +190,28 @@ GASES = {
     "a flat gas": dict(
         words="iso 1 1 5 ptemp 1", after=BATH + "\nfix flat all enforce2d", dimension=2
     ),
+    "a flat gas of held bodies": dict(
+        words="iso 1 1 5 langevin 1 1 2.0 4711 torque * off off off"
+        " force 1*3 off on off force 4 off off off",
+        before="velocity all set 0 0 0",
+        dimension=2,
+        exact=1 + (2 * 9 - 3 - 2) / 2,
+    ),
 }
 
 
 @pytest.mark.parametrize("name", GASES)
 def test_the_volume_of_an_ideal_gas(lmp_tree, tmp_path, name):
-    """<V> = (N + 1) kT/P, with a variance of (N + 1) (kT/P)^2, since random forces change the total momentum."""
+    """<V> = (N + 1) kT/P, with a variance of (N + 1) (kT/P)^2, since random forces change the total momentum.
+
+    N: the number of components that are free, divided by the dimension.
+    """
     scene = dict(GASES[name])
     flat = scene.get("dimension") == 2
+    exact = scene.pop("exact", 10.0 if flat else 9.0)
     trimers(tmp_path / "data.trimers", n=3 if flat else 2, flat=flat)
     text = pressed(scene.pop("words"), 0.02, 300000, pair=GAS, thermo=100, **scene)
     volume = np.array(lmp_tree.succeed(text).thermo[0]["Volume"][300:])
-    exact = 10.0 if flat else 9.0
     for values in (volume, (volume - exact) ** 2):
         blocks = [block.mean() for block in np.array_split(values, 20)]
         assert abs(values.mean() - exact) < 4 * np.std(blocks, ddof=1) / np.sqrt(20)
