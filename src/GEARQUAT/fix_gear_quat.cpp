@@ -13,8 +13,6 @@
 
 #include "fix_gear_quat.h"
 
-#include "gear_quat_checks.h"
-#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_report.h"
 #include "gear_quat_start.h"
@@ -85,8 +83,6 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   create_bodies();
   if (bodies.number() == 0 && args.mol.empty())
     error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
-  warn_of_gaps(lmp, ownership);
-  warn_of_shapes(lmp, bodies, ownership);
   step.meet_bodies();
   count_rows();
   size_array_rows_variable = !args.mol.empty();    // rows may be requested before they exist
@@ -150,7 +146,7 @@ void FixGearQuat::init()
   other_fixes.init();
   if (!step.had_run()) {
     stated = read_stated(lmp, args.mol);
-    warn_of_partial_molecules(lmp, this, args, fleet, ownership);
+    warn_of_partial_molecules(lmp, this, fleet, ownership);
   }
   step.init();
   step.velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
@@ -200,7 +196,6 @@ void FixGearQuat::setup(int vflag)
 {
   const bool first = !step.had_run();
   ownership.spread_states();
-  if (first) other_fixes.warn_of_gravity();
   sites.gather_loads(atom->f, atom->torque);
   driven_box.follow();
   step.begin_run();

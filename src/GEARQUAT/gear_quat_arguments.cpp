@@ -42,7 +42,7 @@ int Arguments::parse_bodystyle(int narg, char **arg)
   const std::string style = arg[FIRST_WORD];
   const int next = FIRST_WORD + 1;
   if (style == "keywords") {
-    if (comm->me == 0) utils::logmesg(lmp, list_of_keywords(keyword_table(), keyword_rules()));
+    if (comm->me == 0) utils::logmesg(lmp, list_of_keywords());
     error->all(FLERR, "Fix gear/quat keywords only lists the keywords, and no fix was made");
   }
   given["bodystyle"].text = style;
@@ -93,7 +93,7 @@ void Arguments::parse_keywords(int narg, char **arg)
 {
   const Keyword *before = nullptr;
   for (int iarg = 0; iarg < narg; ++iarg) {
-    const Keyword &row = find_keyword(lmp, keyword_table(), arg[iarg], before);
+    const Keyword &row = find_keyword(lmp, arg[iarg], before);
     if (row.kind != Keyword::MASK && given.count(row.name))
       error->all(FLERR, "Fix gear/quat keyword {} is given twice", row.name);
     KeywordValue value;
@@ -127,8 +127,8 @@ void Arguments::take_preset()
     if (given.count(name)) continue;
     char *pair[] = {name.data(), word.data()};
     KeywordValue value;
-    find_keyword(lmp, keyword_table(), name).read(lmp, 2, pair, value);
-    find_keyword(lmp, keyword_table(), name).store(*this, value);
+    find_keyword(lmp, name).read(lmp, 2, pair, value);
+    find_keyword(lmp, name).store(*this, value);
     given[name] = value;
   }
 }
@@ -139,7 +139,7 @@ bool Arguments::is_on(const std::string &keyword, const std::string &value) cons
 {
   const auto place = given.find(keyword);
   if (keyword == "bodystyle") return place->second.text == value;
-  const Keyword &row = find_keyword(lmp, keyword_table(), keyword);
+  const Keyword &row = find_keyword(lmp, keyword);
   const std::string &present = place == given.end() ? standard_word(row) : place->second.text;
   if (!value.empty()) return present == value;
   return !present.empty() && !(row.kind == Keyword::WORD && present == "none");
@@ -301,30 +301,6 @@ void Arguments::check_coupling() const
                  "Pstop and Pdamp",
                  name_of_direction(first), name_of_direction(k));
   }
-}
-
-std::string Arguments::words_of_control() const
-{
-  if (!is_on("tolerance", "")) return "";
-  const KeywordValue &eps = given.at("tolerance");
-  std::string text =
-      fmt::format("tolerance {:g} {}", eps.number, control.energy ? "energy" : "length");
-  if (eps.unit != 1.0) text += fmt::format(" {:g}", eps.unit);
-  for (const char *keyword : {"dtmin", "dtmax", "every/time"})
-    if (given.count(keyword)) text += fmt::format(", {} {:g}", keyword, given.at(keyword).number);
-  return text;
-}
-
-std::string Arguments::words_of_pressure() const
-{
-  std::string text;
-  for (const auto &keyword : pressure_keywords()) {
-    if (!given.count(keyword)) continue;
-    const auto &numbers = given.at(keyword).numbers;
-    text += fmt::format("{} {:g} {:g} {:g}, ", keyword, numbers[0], numbers[1], numbers[2]);
-  }
-  if (is_on("couple", "")) text += "couple " + given.at("couple").text + ", ";
-  return text + fmt::format("pchain {}", pressure.length);
 }
 
 /* ----------------------------------------------------------------------

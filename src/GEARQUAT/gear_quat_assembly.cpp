@@ -154,10 +154,10 @@ Assembly::Scales Assembly::scales(int part) const
 ------------------------------------------------------------------------- */
 
 Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extended,
-                   const std::vector<tagint> &ids, const Former *former) :
+                   const std::vector<tagint> &ids) :
     Pointers(lmp),
-    given(given), extended(extended), former(former),
-    parts(comm, world, ids.data(), (int) ids.size()), made(parts.number(), Made())
+    given(given), extended(extended), parts(comm, world, ids.data(), (int) ids.size()),
+    made(parts.number(), Made())
 {
   double steepest = 0.0;
   for (int k = 0; k < 6; ++k) steepest = std::max(steepest, std::fabs(domain->h_inv[k]));
@@ -173,7 +173,6 @@ Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extend
     find_axes(part, momenta[part]);
   }
   orient_axes();
-  if (former) keep_axes();
   for (int part = 0; part < parts.number(); ++part) find_rotation(part, momenta[part]);
   refuse_faults();
   refuse_missing();
@@ -269,6 +268,7 @@ void Assembly::find_moments()
     }
     if (sizes[part].natoms == 1)    // without rounding
       std::copy_n(atom->v[parts.atoms(part).first[0]], 3, one.state.velocity);
+    check_parts(part);
     if (one.body.from_file) take_given(given.at(one.body.id), part);
   }
 }
@@ -320,9 +320,7 @@ void Assembly::take_given(const GivenBody &given_body, int part)
   domain->unmap(one.state.center, image);
 }
 
-static constexpr double ROUNDED = 1.0e-3;     // of a moment written with few digits
-static constexpr double SAME = 1.0e-9;        // of moments, relative
-static constexpr double UNMOVED = 1.0e-11;    // of coordinates, rounding
+static constexpr double ROUNDED = 1.0e-3;    // of a moment written with few digits
 
 static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: on neither side
 
@@ -423,45 +421,6 @@ void Assembly::direct(double *axes, const Sides &sides)
   cross3(axes + 3 * ((last + 1) % 3), axes + 3 * ((last + 2) % 3), axes + 3 * last);
 }
 
-/// The axes of symmetric bodies are arbitrary: a body that has not turned keeps the former ones.
-void Assembly::keep_axes()
-{
-  const std::vector<Largest> moved = over_sites(Largest{0.0}, [this](Largest &all, int part) {
-    visit(part, [&](const Site &site) {
-      double arm[3], arm_body[3];
-      find_arm(site.x, made[part].state.center, arm);
-      to_body(former->axes[parts.atoms(part).first[0]].data(), arm, arm_body);
-      const double off = std::sqrt(distance2(arm_body, former->arm[site.local].data()));
-      all.length = std::max(all.length, off);
-    });
-  });
-  const double box = domain->xprd + domain->yprd + domain->zprd;
-  for (int part = 0; part < parts.number(); ++part) {
-    Made &one = made[part];
-    double *moments = one.body.rigid.inertia;
-    const double largest = std::max({moments[0], moments[1], moments[2]});
-    const double same = SAME * largest;
-    const bool symmetric = std::fabs(moments[0] - moments[1]) < same ||
-        std::fabs(moments[1] - moments[2]) < same || std::fabs(moments[2] - moments[0]) < same;
-    if (!symmetric || moved[part].length > UNMOVED * (box + length(one.state.center))) continue;
-    const double *axes = former->axes[parts.atoms(part).first[0]].data();
-    double tensor[9] = {}, now[3];
-    add_tensor(moments, one.axes, tensor);
-    bool principal = true;
-    for (int k = 0; k < 3; ++k) {
-      double turned[3];    // I times the k-th axis
-      to_body(tensor, axes + 3 * k, turned);
-      now[k] = dot3(turned, axes + 3 * k);
-      for (int l = 0; l < 3; ++l)
-        if (std::fabs(turned[l] - now[k] * axes[3 * k + l]) > same) principal = false;
-    }
-    if (!principal) continue;
-    std::copy_n(axes, 9, one.axes);
-    std::copy_n(now, 3, moments);
-    drop_vanishing_moments(moments);
-  }
-}
-
 /* ----------------------------------------------------------------------
    invalid bodies
 ------------------------------------------------------------------------- */
@@ -476,6 +435,19 @@ static const char *const FAULT_TEXTS[] = {
     "sum of the two others, which is impossible",
     "Fix gear/quat, infile or template: the center of mass of body {} is far away from all its "
     "atoms; are its position and its image flags right?"};
+
+/// Two plates may be one body, but two halves of a molecule at opposite faces of the box may not: then
+/// even the site nearest to the middle is far from it.
+void Assembly::check_parts(int part)
+{
+  constexpr double FAR = 1.0 / 3.0;    // of a period
+  const auto center = middle(part);
+  double way[3], periods[3];
+  for (int k = 0; k < 3; ++k) way[k] = moments[part].x[k] - center[k];
+  to_periods(domain, way, periods);
+  for (int k = 0; k < domain->dimension; ++k)
+    if (domain->periodicity[k] && std::fabs(periods[k]) > FAR) faulty[TORN] = parts.key(part);
+}
 
 /// A given center may lie outside of the body, but not by half a box, since image flags belong to
 /// it.
@@ -507,6 +479,12 @@ void Assembly::refuse_faults()
   const auto any = over_ranks(MPI_MAX, faulty, world);
   for (int fault = 0; fault < FAULTS; ++fault)
     if (any[fault] > 0) error->all(FLERR, FAULT_TEXTS[fault], any[fault]);
+  if (any[TORN] > 0 && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: parts of body {} are more than half of a periodic box apart; if "
+                   "they belong together, the image flags of its atoms are wrong: unwrap the atoms "
+                   "in the data file, or use set image before this fix",
+                   any[TORN]);
 }
 
 void Assembly::refuse_missing()

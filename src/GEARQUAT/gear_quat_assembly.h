@@ -28,12 +28,6 @@ namespace LAMMPS_NS::GearQuat {
 
 class Extended;
 
-/// Poses of owned atoms in bodies that are made again.
-struct Former {
-  std::vector<std::array<double, 3>> arm;    ///< along the principal axes
-  std::vector<std::array<double, 9>> axes;
-};
-
 class Assembly : protected Pointers {
  public:
   /// A body with sites on this rank.
@@ -49,9 +43,9 @@ class Assembly : protected Pointers {
 
   /// Creates the bodies.  ids: of every owned atom, 0 for none.  extended: null if all atoms are
   /// points.  Massless bodies, and bodies in the infile that no atom belongs to, end the run on all
-  /// ranks.  Collective.
+  /// ranks.  Rank 0 warns of a body in two parts, which wrong image flags may have made.  Collective.
   Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extended,
-           const std::vector<tagint> &ids, const Former *former);
+           const std::vector<tagint> &ids);
 
   /// The bodies with sites on this rank.
   const std::vector<Made> &bodies() const { return made; }
@@ -72,14 +66,13 @@ class Assembly : protected Pointers {
  private:
   const GivenBodies &given;
   const Extended *extended;
-  const Former *former;    ///< null for new bodies
   Parts parts;
   std::vector<Made> made;
   double certain;    ///< sites closer to each other than this have consistent image flags
 
-  enum { MASSLESS, NOT_FINITE, NEGATIVE, UNBALANCED, APART, FAULTS };
-  tagint faulty[FAULTS] = {};    ///< a body with each fault on this rank, 0 for none
-  std::vector<tagint> found;     ///< given bodies whose owner atoms are here
+  enum { MASSLESS, NOT_FINITE, NEGATIVE, UNBALANCED, APART, FAULTS, TORN = FAULTS, FINDINGS };
+  tagint faulty[FINDINGS] = {};    ///< a body with each fault on this rank, 0 for none
+  std::vector<tagint> found;       ///< given bodies whose owner atoms are here
 
   struct Site {
     double mass;
@@ -118,10 +111,6 @@ class Assembly : protected Pointers {
     double from_center2;    ///< smallest one from the center of mass
     ExactSum inertia_space[6], angular_momentum_space[3];    ///< xx, xy, xz, yy, yz, zz
     void merge(const Momenta &other);
-  };
-  struct Largest {
-    double length;
-    void merge(const Largest &other) { length = std::max(length, other.length); }
   };
   struct Sides {    ///< of the heaviest site outside of the plane across each axis
     double mass[3];
@@ -168,8 +157,8 @@ class Assembly : protected Pointers {
   void find_axes(int part, const Momenta &momenta);
   void orient_axes();
   static void direct(double *axes, const Sides &sides);
-  void keep_axes();
   void find_rotation(int part, const Momenta &momenta);
+  void check_parts(int part);
   void check_place(int part, const Momenta &momenta);
   void check_moments(const Made &one);
   void refuse_faults();

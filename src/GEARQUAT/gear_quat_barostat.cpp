@@ -5,17 +5,23 @@
 
 #include "gear_quat_barostat.h"
 
-#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
+#include "gear_quat_styles.h"
 
+#include "angle.h"
 #include "atom.h"
+#include "bond.h"
 #include "comm.h"
+#include "compute.h"
+#include "dihedral.h"
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "improper.h"
 #include "kspace.h"
 #include "modify.h"
+#include "pair.h"
 #include "update.h"
 #include "utils.h"
 
@@ -38,6 +44,10 @@ static constexpr double FOLLOWED = 0.6, MEMORY = 2.0;
 // targets that differ by less than this are equal up to rounding
 
 static constexpr double ROUNDING = 1.0e-12;
+
+// LAMMPS' order of a virial is xx yy zz xy xz yz
+
+static constexpr int PLACES[] = {0, 1, 2, 5, 4, 3};
 
 /* ---------------------------------------------------------------------- */
 
@@ -278,8 +288,8 @@ void Barostat::refuse_speed() const
 {
   error->all(FLERR,
              "Fix gear/quat: in step {} the box moves so fast that its thermostat cannot follow; "
-             "begin nearer to the target pressure, or use a Pdamp of {:.2g} or longer",
-             update->ntimestep, longer_period(0.0));
+             "begin nearer to the target pressure, or use a longer Pdamp",
+             update->ntimestep);
 }
 
 void Barostat::end_passes()
@@ -349,7 +359,6 @@ double Barostat::energy(double heat) const
 
 double Barostat::element(int n) const
 {
-  static constexpr int PLACES[] = {0, 1, 2, 5, 4, 3};    // of xx yy zz xy xz yz
   const double to_pressure = force->nktv2p * force->mvv2e;
   if (n < P_TARGET) {
     if (!(box.volume() > 0.0)) return 0.0;    // there was no run yet
@@ -436,13 +445,7 @@ void Barostat::begin_run(bool anew, double h)
   tell_freedoms();
   if (anew) refer_to_box(h);
   correction = Upper();    // forces are evaluated in the corrected box
-  double here = 0.0;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    here = std::max(here, bodies.body_at(ibody).extent);
-  longest_body = over_ranks(MPI_MAX, here, world);
-  for (int k = 0; k < 3; ++k) refuse_narrow_box(k, domain->prd[k]);
   since = 0.0;
-  strongest = Upper();
   virial->request(update->ntimestep + 1);
 }
 
@@ -478,9 +481,7 @@ void Barostat::refer_to_box(double h)
 /// M'' at the start.
 Upper Barostat::begin_acceleration(double xi)
 {
-  const Upper push = drive();
-  note_drive(push);
-  return CellHistory::acceleration(box.matrix(), rate, push, xi);
+  return CellHistory::acceleration(box.matrix(), rate, drive(), xi);
 }
 
 void Barostat::begin_start(const StartNodes &nodes, double xi)
@@ -552,32 +553,9 @@ void Barostat::seed_local(double h, int terms, double xi)
    an oscillation of the bodies
 ------------------------------------------------------------------------- */
 
-void Barostat::note_drive(const Upper &drive)
-{
-  for (int k = 0; k < Upper::SIZE; ++k)
-    if (std::isfinite(drive[k])) strongest[k] = std::max(strongest[k], std::fabs(drive[k]));
-}
-
 double Barostat::frequency() const
 {
   return along > 0.0 && against > 0.0 ? std::sqrt(against / along) : 0.0;
-}
-
-/// A damping time with which the strongest drive of this run does not change the box too much in a
-/// step.  A drive d causes a strain rate of sqrt(2 d) until the box has changed by its own size, and
-/// of d/omega in an oscillation with this angular frequency, 0 if it is not known.  Both rates are
-/// proportional to 1/Pdamp.
-double Barostat::longer_period(double omega) const
-{
-  constexpr double MARGIN = 1.3;    // the oscillation is not harmonic
-  double needed = 1.05 * period();
-  for (int k = 0; k < Upper::SIZE; ++k) {
-    if (!asked.on[k]) continue;
-    const double most = std::sqrt(2.0 * strongest[k]);
-    const double rate = omega > 0.0 ? std::min(most, MARGIN * strongest[k] / omega) : most;
-    needed = std::max(needed, 1.05 * asked.period[k] * rate * std::fabs(width) / IN_A_STEP);
-  }
-  return rounded_up(needed);
 }
 
 double Barostat::longest_step() const
@@ -600,7 +578,6 @@ void Barostat::note_step(double h)
   }
   last_drive = push;
   since += std::fabs(h);
-  note_drive(push);
 }
 
 /// If the sums represent this run.
@@ -608,22 +585,9 @@ void Barostat::add_rate(double h, std::vector<Rate> &table) const
 {
   if (!moves() || since < MEMORY * period()) return;
   const double radians = frequency() * std::fabs(h), followed = FOLLOWED * fastest;
-  const double needed =
-      std::max(rounded_up(1.05 * period() * radians / followed), longer_period(frequency()));
   table.push_back({"the angle of the oscillation of the box is", radians, followed,
-                   fmt::format("use a Pdamp of {:g} or longer", needed)});
-}
-
-/// In such a box a body overlaps with its own images, and atoms are lost.
-void Barostat::refuse_narrow_box(int direction, double edge) const
-{
-  if (!asked.on[direction] || edge > longest_body) return;
-  error->all(
-      FLERR,
-      "Fix gear/quat: in step {} the edge of the box along {}, {:.4g}, would be shorter than "
-      "a body, whose atoms are {:.4g} apart; use more bodies, a smaller target pressure, or iso, "
-      "which keeps the shape of the box: no liquid sustains unequal pressures",
-      update->ntimestep, "xyz"[direction], edge, longest_body);
+                   fmt::format("use a Pdamp of {:g} or longer",
+                               rounded_up(1.05 * period() * radians / followed))});
 }
 
 /// The box is predicted, but LAMMPS still has the old box.
@@ -636,10 +600,9 @@ void Barostat::refuse_box(const Upper &matrix) const
       error->all(
           FLERR,
           "Fix gear/quat: in step {} the box would change its length along {} from {:.4g} by "
-          "the factor {:.3g}; begin nearer to the target pressure, or use a Pdamp of {:.2g} or "
-          "longer, unless a fluid tears under a target that is negative or too small",
-          update->ntimestep, "xyz"[k], domain -> prd[k], ratio, longer_period(0.0));
-    refuse_narrow_box(k, domain->prd[k] * ratio);
+          "the factor {:.3g}; begin nearer to the target pressure, or use a longer Pdamp, unless a "
+          "fluid tears under a target that is negative or too small",
+          update->ntimestep, "xyz"[k], domain -> prd[k], ratio);
   }
 }
 
@@ -654,4 +617,115 @@ void Barostat::fields(Fields &v)
   if (!v.reads()) return;
   present = made;
   note_rates(width);
+}
+
+/* ----------------------------------------------------------------------
+   the virial of centers of mass
+------------------------------------------------------------------------- */
+
+// bits of vflag in LAMMPS: pairs are tallied, or forces on owned and ghost atoms
+
+static constexpr int PAIR_BY_PAIR = 1, BY_FORCES = 2;
+
+// exact sums represent terms up to 2^20 units, since overlaps have large forces
+
+static constexpr double LARGE = 1048576.0;    // 2^20
+
+MolecularVirial::MolecularVirial(LAMMPS *lmp, const Fix *fix, const Sites &sites) :
+    Pointers(lmp), id(std::string(fix->id) + "_virial"), fix(fix), sites(sites)
+{
+  modify->add_compute(id + " all pressure NULL pair bond angle dihedral improper kspace");
+}
+
+MolecularVirial::~MolecularVirial()
+{
+  if (own()) modify->delete_compute(id);
+}
+
+Compute *MolecularVirial::own() const
+{
+  return modify->get_compute_by_id(id);
+}
+
+static bool counts(const Fix *other)
+{
+  return other->virial_global_flag && other->thermo_virial;
+}
+
+void MolecularVirial::refuse_scene() const
+{
+  if (!own() || !own()->pressflag)
+    error->all(
+        FLERR,
+        "Fix gear/quat: compute {}, with which the fix asks LAMMPS for the virial, was deleted "
+        "or replaced; leave it, or define the fix again",
+        id);
+  const auto &fixes = modify->get_fix_list();
+  const auto place_of = [&](const Fix *one) {
+    return std::find(fixes.begin(), fixes.end(), one);
+  };
+  for (const auto *other : fixes_with_forces(lmp, fix)) {
+    const bool before = place_of(other) < place_of(fix);
+    if (before == counts(other)) continue;
+    error->all(
+        FLERR,
+        "Fix gear/quat: with a pressure, {} has to be defined {} fix {}, because its force {} "
+        "(fix_modify virial {})",
+        name_of(other), before ? "after" : "before", fix->id,
+        before ? "does not count in the pressure" : "counts in the pressure",
+        before ? "no" : "yes");
+  }
+}
+
+void MolecularVirial::request(bigint step) const
+{
+  own()->addstep(step);
+}
+
+bool MolecularVirial::others_ask(bigint step) const
+{
+  for (auto *one : modify->get_compute_list())
+    if ((one->pressflag || one->pressatomflag) && id != one->id && one->matchstep(step))
+      return true;
+  return false;
+}
+
+int MolecularVirial::flag() const
+{
+  return force->newton_pair ? BY_FORCES : PAIR_BY_PAIR;
+}
+
+template <class Style> static void add_virial(const Style *style, double (&sum)[6])
+{
+  if (!style) return;
+  for (int k = 0; k < 6; ++k) sum[k] += style->virial[k];
+}
+
+void MolecularVirial::measure(double **f, double energy)
+{
+  double styles[6] = {};
+  add_virial(force->pair, styles);
+  if (atom->molecular != Atom::ATOMIC) {
+    add_virial(force->bond, styles);
+    add_virial(force->angle, styles);
+    add_virial(force->dihedral, styles);
+    add_virial(force->improper, styles);
+  }
+  for (int i = 0; modify->fix[i] != fix; ++i)
+    if (counts(modify->fix[i])) add_virial(modify->fix[i], styles);
+  ExactSum of_arms[6];
+  const double scale = LARGE * ExactSum::scale_of(energy);
+  sites.add_arm_virial(f, of_arms, scale);
+  sum_over_ranks(of_arms, world);
+  const auto all_styles = over_ranks(MPI_SUM, styles, world);
+  for (int k = 0; k < 6; ++k) {
+    virial[k] = all_styles[PLACES[k]] - of_arms[k].value(scale);
+    if (force->kspace) virial[k] += force->kspace->virial[PLACES[k]];    // the sum over all ranks
+    virial[k] /= force->mvv2e;
+  }
+  if (!force->pair || !force->pair->tail_flag) return;
+  const double *edges = domain->prd;
+  const double volume = edges[0] * edges[1] * (domain->dimension == 3 ? edges[2] : 1.0);
+  for (int k = 0; k < domain->dimension; ++k)
+    virial[k] += force->pair->ptail / (volume * force->mvv2e);
 }

@@ -10,7 +10,7 @@
      W G_ab' = sum m v_a v_b + delta_ab b_a sum m v^2 + W_ab - P_ab V delta_ab - W xi G_ab        (P2)
 
    for the free components.  v is relative to a constant common motion, and W_ab is the molecular
-   virial (gear_quat_virial.h).  The weights are b = 1/N_f with the translational degrees of freedom
+   virial (Eq. P6 below).  The weights are b = 1/N_f with the translational degrees of freedom
    N_f, or (3, 1, -1)/N_f if the box shears.  The mass is W = (N_f + d) kT Pdamp^2/d.  Coupled
    components have the mean of their right-hand sides.  xi is the friction of a chain of the box.
    The energy
@@ -22,6 +22,17 @@
    evaluates the forces in the predicted box, and every pass of the corrector corrects the box.  Atoms
    in no body, which do not move by themselves, keep their places relative to the box.
 
+   The virial of the centers of mass of all bodies is (Eq. P6)
+
+     W_ab = sum over pairs of F_a (R_ij)_b = V_ab - sum_i (f_i)_a (d_i)_b,      a <= b,
+
+   where V is the virial of LAMMPS' styles for atoms, and f_i and d_i are force and arm of site i.
+   It needs no constraint forces.  LAMMPS computes V in the requested steps.
+
+   As in LAMMPS, the force of another fix counts if the fix adds it to the virial (fix_modify virial
+   yes).  Fixes exert their forces in the order of their definition, so those whose forces count come
+   before this one, and all others after it: f_i are the forces of styles and of the fixes before.
+
    Without these keywords moves() is false: functions do nothing, and centers are not scaled. */
 
 #ifndef LMP_GEAR_QUAT_BAROSTAT_H
@@ -31,14 +42,49 @@
 #include "gear_quat_box.h"
 #include "gear_quat_fields.h"
 #include "gear_quat_remembered_loads.h"
+#include "gear_quat_sites.h"
 #include "gear_quat_stability.h"
 #include "gear_quat_startup.h"
 #include "gear_quat_temperature.h"
-#include "gear_quat_virial.h"
 
 #include <optional>
 
+namespace LAMMPS_NS {
+class Compute;
+}    // namespace LAMMPS_NS
+
 namespace LAMMPS_NS::GearQuat {
+
+class MolecularVirial : protected Pointers {
+ public:
+  /// Adds compute ID_virial, which requests the virial from LAMMPS.
+  MolecularVirial(LAMMPS *lmp, const Fix *fix, const Sites &sites);
+  ~MolecularVirial() override;
+
+  /// Ends the run if the compute was deleted or replaced since the last run, or if the force of
+  /// another fix counts and acts later, or does not count and acts before.
+  void refuse_scene() const;
+  /// LAMMPS will compute V in that step.
+  void request(bigint step) const;
+  /// Computes it from V and the forces f on atoms, in post_force() of this fix.  energy: of all
+  /// bodies, approximate.  Collective.
+  void measure(double **f, double energy);
+  /// The virial in units of mass times velocity squared.
+  const Upper &value() const { return virial; }
+  template <class V> void fields(V &v) { v(virial); }
+  /// True if another compute requests a virial in this step.
+  bool others_ask(bigint step) const;
+  /// The vflag for the evaluation of forces.
+  int flag() const;
+
+ private:
+  std::string id;
+  const Fix *fix;
+  const Sites &sites;
+  Upper virial;
+
+  Compute *own() const;
+};
 
 /// The nodes of a start, centered at the present time.
 struct StartNodes {
@@ -204,9 +250,7 @@ class Barostat : protected Pointers {
   double since = 0.0;                   ///< time of this run
   Upper last_drive;
 
-  std::string told;             ///< last message of the degrees of freedom
-  double longest_body = 0.0;    ///< largest distance of a site from the owner atom of its body
-  Upper strongest;              ///< drive in this run, as magnitudes
+  std::string told;    ///< last message of the degrees of freedom
 
   // the start
 
@@ -219,7 +263,6 @@ class Barostat : protected Pointers {
   void find_target(bigint step, double h);
   Upper target() const { return present.target + present.target_rate.scaled(time_of_node); }
   Upper drive() const;
-  void note_drive(const Upper &drive);
   Upper begin_acceleration(double xi);
   void note_rates(double h);
   void combine(const Friction &alpha);
@@ -228,10 +271,8 @@ class Barostat : protected Pointers {
   void show_box(bool forces);
   void refuse_others() const;
   void refuse_box(const Upper &matrix) const;
-  void refuse_narrow_box(int direction, double edge) const;
   void tell_freedoms();
   double frequency() const;
-  double longer_period(double omega) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

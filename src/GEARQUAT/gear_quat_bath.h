@@ -8,7 +8,7 @@
 
      keyword langevin      a random step of all momenta between steps (gear_quat_langevin.h)
      keyword temp          Nose-Hoover chains (gear_quat_chain.h), driven by the temperature
-     keyword isokinetic    Gauss's principle (gear_quat_isokinetic.h)
+     keyword isokinetic    Gauss's principle (gear_quat_temperature.h)
      keywords of pressure  a box that moves (gear_quat_barostat.h), with chains or without
 
    Without these three acts() is false, and bodies move by their own loads.
@@ -31,7 +31,6 @@
 #include "gear_quat_arguments.h"
 #include "gear_quat_barostat.h"
 #include "gear_quat_history.h"
-#include "gear_quat_isokinetic.h"
 #include "gear_quat_temperature.h"
 
 #include <array>

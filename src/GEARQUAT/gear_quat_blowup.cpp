@@ -174,19 +174,10 @@ std::string Step::remedy(int ibody, const BodyState &s, double h) const
   constexpr char APART[] = "begin with atoms farther apart, for example after minimize or a run "
                            "with keywords tolerance and temp";
   constexpr double OVERLAP = 100.0;    // times the limit: due to an overlap, and not to the step
-  constexpr double SMALL = 0.01;       // moment of inertia by mass and extent
-  const Body &body = bodies.body_at(ibody);
   const Load &l = bodies.load_of(ibody);
-  const double size = std::fabs(h), spin = GearQuat::length(s.omega_body);
+  const double size = std::fabs(h);
   if (!std::isfinite(GearQuat::length(l.force) + GearQuat::length(l.torque_space))) return APART;
 
-  double moment = 0.0;    // about the axis of rotation
-  for (int k = 0; k < 3; ++k)
-    moment += body.rigid.inertia[k] * s.omega_body[k] * s.omega_body[k] / (spin * spin);
-  if (spin * size > 1.0 && moment < SMALL * body.rigid.mass * body.extent * body.extent)
-    return fmt::format("its moment of inertia about the axis of this rotation, {:g}, is small for "
-                       "its size; state a larger one, or 0 along this axis, by an infile",
-                       moment);
   for (const auto &rate : all_rates(h))
     if (rate.part() > 1.0) return rate.part() < OVERLAP ? words_of(rate) : APART;
   if (tolerance)

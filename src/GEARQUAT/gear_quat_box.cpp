@@ -5,11 +5,20 @@
 
 #include "gear_quat_box.h"
 
+#include "gear_quat_arguments.h"
+#include "gear_quat_step.h"
+#include "gear_quat_styles.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
+#include "error.h"
+#include "fix.h"
 #include "force.h"
 #include "kspace.h"
+#include "modify.h"
+#include "update.h"
+#include "utils.h"
 
 #if __has_include("irregular.h")
 #include "irregular.h"
@@ -139,10 +148,6 @@ void Box::flip()
 
 static constexpr double PART = 0.25;
 
-// coordinates count as equal if they differ by less than this part of the box
-
-static constexpr double SAME = 1.0e-9;
-
 void GearQuat::to_periods(const Domain *domain, const double *way, double *periods)
 {
   const double *to_box = domain->h_inv;
@@ -203,32 +208,6 @@ bool GearQuat::whole_periods_away(const Domain *domain, const double *change, do
   return false;
 }
 
-bool GearQuat::moved_with_faces(const Domain *domain, const double *box_before,
-                                const double *change)
-{
-  double box_change[6];
-  bool changed = false;
-  const double same = SAME * (domain->h[0] + domain->h[1] + domain->h[2]);
-  for (int k = 0; k < 6; ++k) {
-    box_change[k] = domain->h[k] - box_before[k];
-    changed = changed || std::fabs(box_change[k]) > same;
-  }
-  if (!changed) return false;
-  for (int code = 0; code < 27; ++code) {    // all combinations of -1, 0 and 1
-    double images[3] = {code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0};
-    for (int k = 0; k < 3; ++k)
-      if (!is_periodic(domain, k)) images[k] = 0.0;
-    double way[3], longest = 0.0, off = 0.0;
-    through(box_change, images, way);
-    for (int k = 0; k < 3; ++k) {
-      longest = std::max(longest, std::fabs(way[k]));
-      off = std::max(off, std::fabs(way[k] - change[k]));
-    }
-    if (longest > same && off < same) return true;
-  }
-  return false;
-}
-
 void GearQuat::follow_box(const Domain *domain, const double *box_before, const double *position,
                           double *moved)
 {
@@ -242,4 +221,198 @@ void GearQuat::follow_box(const Domain *domain, const double *box_before, const 
   }
   through(domain->h, periods, moved);
   for (int k = 0; k < 3; ++k) moved[k] += domain->boxlo[k];
+}
+
+/* ----------------------------------------------------------------------
+   a box that another fix changes: before a run
+------------------------------------------------------------------------- */
+
+static bool changes_box(const Fix *one)
+{
+  return one->box_change & (Fix::BOX_CHANGE_SIZE | Fix::BOX_CHANGE_SHAPE);
+}
+
+void DrivenBox::init()
+{
+  driver = nullptr;
+  for (const auto *other : modify->get_fix_list()) {
+    if (other == fix || !changes_box(other)) continue;
+    driver = other;
+    if (!known(Fact::CARRIES_BODIES, other))
+      error->all(FLERR,
+                 "Fix gear/quat: fix {} ({}) changes the box without informing other fixes of "
+                 "the remap, so bodies cannot follow; use fix deform, fix press/berendsen, or "
+                 "fix npt on other atoms",
+                 other->id, other->style);
+    if (args.pressure.any())
+      error->all(FLERR,
+                 "Fix gear/quat: keywords of constant pressure change the box, and fix {} ({}) "
+                 "changes it, too; leave out one of the two",
+                 other->id, other->style);
+    if (args.control.eps > 0.0)
+      error->all(FLERR,
+                 "Fix gear/quat tolerance cannot be used with fix {} ({}), whose box is a function "
+                 "of the number of the step; leave out keyword tolerance",
+                 other->id, other->style);
+  }
+  if (driver && domain->deform_vremap && args.isokinetic != Isokinetic::NONE)
+    error->all(FLERR,
+               "Fix gear/quat isokinetic: the velocities of bodies contain the flow of fix deform "
+               "remap v, which is not thermal motion; use keyword temp, or remap x");
+}
+
+/* ----------------------------------------------------------------------
+   atoms are remapped with the box
+------------------------------------------------------------------------- */
+
+/// A barostat with too short a damping time even turns the box inside out.
+void DrivenBox::refuse_jump() const
+{
+  constexpr double JUMP = 0.05;    // of an edge in a step
+  for (int k = 0; k < 3; ++k) {
+    const double ratio = domain->h[k] / ownership.box()[k];
+    if (std::fabs(ratio - 1.0) < JUMP) continue;
+    for (const auto *other : modify->get_fix_list())
+      if (other != fix && changes_box(other) && !utils::strmatch(other->style, "^deform"))
+        error->all(FLERR,
+                   "Fix gear/quat: fix {} ({}) has changed the length of the box along {} by a "
+                   "factor of {:.3g} in step {}; give it a much longer Pdamp, or fix "
+                   "press/berendsen a larger modulus",
+                   other->id, other->style, "xyz"[k], ratio, update -> ntimestep);
+  }
+}
+
+void DrivenBox::begin_remap()
+{
+  ownership.note_box();
+}
+
+void DrivenBox::end_remap()
+{
+  refuse_jump();
+  const double *before = ownership.box().data();
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    const double *center = bodies.state_of(ibody).center;
+    double moved[3], way[3];
+    follow_box(domain, before, center, moved);
+    for (int k = 0; k < 3; ++k) way[k] = moved[k] - center[k];
+    move_center(ibody, way);
+  }
+  place_sites();
+}
+
+/// Moves the centers of the state and of the history.
+void DrivenBox::move_center(int ibody, const double *way)
+{
+  double *center = bodies.change_state(ibody).center;
+  for (int k = 0; k < 3; ++k) center[k] += way[k];
+  if (!step.started) return;
+  double *row = bodies.history(ibody) + Scheme::POSITION;
+  for (int k = 0; k < 3; ++k) row[k] += way[k];
+}
+
+void DrivenBox::place_sites()
+{
+  ownership.spread_moved();
+  sites.place(false);
+  ownership.note_box();
+}
+
+/* ----------------------------------------------------------------------
+   atoms do not move
+------------------------------------------------------------------------- */
+
+void DrivenBox::follow()
+{
+  const auto &box = ownership.box();
+  if (!driver || std::equal(domain->h, domain->h + 6, box.begin())) return;
+  double change[6], way[3];
+  for (int k = 0; k < 6; ++k) change[k] = domain->h[k] - box[k];
+  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
+    through(change, bodies.body_at(ibody).image.data(), way);
+    move_center(ibody, way);
+  }
+  ownership.note_box();
+}
+
+/// The body keeps its velocity relative to the faces that its owner atom has crossed since the last
+/// call, also if fix deform has flipped the box.  images: of the owner atom, now.
+void DrivenBox::pass_faces(int ibody, const double *images)
+{
+  const double *rates = step.phase == Phase::BEGUN ? domain->h_rate : sites.rates_of_faces().data();
+  double away[2][3], periods[3], velocity[3];
+  through(ownership.box().data(), bodies.body_at(ibody).image.data(), away[0]);
+  through(domain->h, images, away[1]);
+  for (int k = 0; k < 3; ++k) away[1][k] = away[0][k] - away[1][k];
+  to_periods(domain, away[1], periods);
+  for (double &number : periods) number = std::round(number);
+  through(rates, periods, velocity);
+  add3(velocity, bodies.change_state(ibody).velocity);
+  if (!step.started || ibody >= bodies.nmoved()) return;
+  const Scheme &scheme = step.scheme();
+  double *rows = bodies.history(ibody), *first = rows + scheme.width() + Scheme::POSITION;
+  for (int k = 0; k < 3; ++k) first[k] += step.length() * velocity[k];
+  if (!scheme.first()) return;
+  const double mass = bodies.rigid_of(ibody).mass;
+  for (int k = 0; k < 3; ++k) rows[Scheme::MOMENTUM + k] += mass * velocity[k];
+}
+
+/// Every rank changes the same body in the same way.
+void DrivenBox::follow_images()
+{
+  if (!driver) return;
+  std::vector<Load> found(bodies.nhere());    // images, and whether faces change the velocity
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
+    const int owner = ownership.owner_of(ibody);
+    const auto image = sites.image_of({owner, ibody, {}});
+    std::copy_n(image.begin(), 3, found[ibody].force);
+    const bool passes = domain->deform_vremap && !bodies.body_at(ibody).fresh &&
+        (atom->mask[owner] & domain->deform_groupbit);
+    found[ibody].torque_space[0] = passes;
+  }
+  ownership.sum(found);
+  ownership.spread(found);
+  for (int ibody = 0; ibody < bodies.nhere(); ++ibody) {
+    if (found[ibody].torque_space[0] != 0.0) pass_faces(ibody, found[ibody].force);
+    std::copy_n(found[ibody].force, 3, bodies.change_body(ibody).image.begin());
+  }
+}
+
+void DrivenBox::note_images()
+{
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    bodies.change_body(ibody).image = sites.image_of({ownership.owner_of(ibody), ibody, {}});
+}
+
+/// A moving box that another command has changed begins again.
+/// LAMMPS would wrap the atoms of bodies with the present motion of the faces, instead of the motion
+/// with which their velocities were placed.
+void DrivenBox::begin_setup()
+{
+  const auto &box = ownership.box();
+  if (args.pressure.any() &&
+      !(std::equal(domain->h, domain->h + 6, box.begin()) &&
+        std::equal(domain->boxlo, domain->boxlo + 3, box.begin() + 6)))
+    step.forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
+  if (!driver) return;
+  note_images();
+  follow();
+  if (!domain->deform_vremap) return;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!ownership.in_body(i)) continue;
+    auto passed = periods_of(atom->image[i]);
+    domain->remap(atom->x[i], atom->image[i]);
+    const auto now = periods_of(atom->image[i]);
+    for (int k = 0; k < 3; ++k) passed[k] -= now[k];
+    double flow[3];
+    through(sites.rates_of_faces().data(), passed.data(), flow);
+    add3(flow, atom->v[i]);
+  }
+}
+
+void DrivenBox::end_run()
+{
+  if (!driver) return;
+  follow();
+  place_sites();
 }

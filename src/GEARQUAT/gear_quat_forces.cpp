@@ -5,9 +5,9 @@
 
 #include "gear_quat_forces.h"
 
-#include "gear_quat_known_styles.h"
 #include "gear_quat_math.h"
 #include "gear_quat_ranks.h"
+#include "gear_quat_styles.h"
 
 #include "angle.h"
 #include "atom.h"

@@ -17,7 +17,7 @@
 #ifndef LMP_GEAR_QUAT_MINIMIZE_H
 #define LMP_GEAR_QUAT_MINIMIZE_H
 
-#include "gear_quat_nearest.h"
+#include "gear_quat_shapes.h"
 #include "gear_quat_sites.h"
 
 namespace LAMMPS_NS::GearQuat {

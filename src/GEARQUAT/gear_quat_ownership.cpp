@@ -87,8 +87,7 @@ void Ownership::note_box()
   last_box.insert(last_box.end(), domain->boxlo, domain->boxlo + 3);
 }
 
-bool Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh,
-                    const Former *former)
+bool Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh)
 {
   std::vector<int> atoms;
   for (int i = 0; i < atom->nlocal; ++i)
@@ -98,7 +97,7 @@ bool Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
   if (any_extended && !records.has_records()) records.reset(true, (int) assigned.size());
 
   bool free = false;
-  const Assembly assembly(lmp, given, any_extended ? &records : nullptr, ids, former);
+  const Assembly assembly(lmp, given, any_extended ? &records : nullptr, ids);
   assembly.for_sites([&](const Assembly::Made &one, int i, const double *arm_body) {
     assigned[i].id = one.body.id;
     assigned[i].owner = one.owner;
@@ -121,15 +120,8 @@ bool Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
 void Ownership::recreate()
 {
   std::vector<tagint> ids(atom->nlocal);
-  Former former = {std::vector<std::array<double, 3>>(atom->nlocal),
-                   std::vector<std::array<double, 9>>(atom->nlocal)};
-  for (int i = 0; i < atom->nlocal; ++i) {
-    ids[i] = assigned[i].id;
-    std::copy_n(assigned[i].arm, 3, former.arm[i].begin());
-    if (index[i] >= 0) std::copy_n(bodies.axes(index[i]), 9, former.axes[i].begin());
-  }
-  clear();
-  add(ids, GivenBodies(), false, &former);
+  for (int i = 0; i < atom->nlocal; ++i) ids[i] = assigned[i].id;
+  create(ids, GivenBodies());
 }
 
 bool Ownership::resume(const std::vector<const double *> &packed, bool with_extended, int group)

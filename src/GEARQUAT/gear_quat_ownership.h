@@ -36,8 +36,6 @@ class Fix;
 
 namespace LAMMPS_NS::GearQuat {
 
-struct Former;
-
 /// Counts, the same on all ranks; bodies are given by their IDs, 0 for none.
 struct Comparison {
   bigint removed_freedoms;    ///< removed by rigidity from bodies wholly in the group
@@ -81,9 +79,7 @@ class Ownership : protected Pointers {
   /// on this rank do not move as rigid bodies.
   bool create(const std::vector<tagint> &ids, const GivenBodies &given);
   /// Builds more bodies, from atoms that are in none.  fresh: in a step, without histories.
-  /// former: null, or of the same bodies, whose axes are kept if possible.
-  bool add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh,
-           const Former *former = nullptr);
+  bool add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh);
   /// Rebuilds the same bodies from the atoms' present masses, positions and velocities.
   void recreate();
   /// Replaces the bodies that the command has just made by the bodies of a restart file, made of

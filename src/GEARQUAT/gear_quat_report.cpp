@@ -6,9 +6,9 @@
 #include "gear_quat_report.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_step.h"
+#include "gear_quat_styles.h"
 
 #include "atom.h"
 #include "citeme.h"
@@ -22,12 +22,108 @@
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "pair.h"
+#include "update.h"
 #include "utils.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
+
+/* ----------------------------------------------------------------------
+   what is refused
+------------------------------------------------------------------------- */
+
+/// The atom is moved by a fix other than this one.
+static bool is_moved(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, int i)
+{
+  const auto &fixes = lmp->modify->get_fix_list();
+  return std::any_of(fixes.begin(), fixes.end(), [&](Fix *other) {
+    return other != fix && other->time_integrate && fleet.moves(other, lmp->atom, i);
+  });
+}
+
+/// Forces are evaluated once per step, so all levels of r-RESPA need the same time step.
+static void refuse_steps(LAMMPS *lmp)
+{
+  const double dt = lmp->update->dt;
+  if (dt == 0.0 || !std::isfinite(dt))
+    lmp->error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}", dt);
+  const std::vector<double> steps = RespaForces::steps(lmp);
+  for (size_t level = 1; level < steps.size(); ++level)
+    if (steps[level] != steps[0])
+      lmp->error->all(FLERR,
+                      "Fix gear/quat requires run_style respa to have the same step at all levels "
+                      "(loop factors of 1); levels 1 and {} have {} and {}",
+                      level + 1, steps[0], steps[level]);
+}
+
+void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
+                            const Ownership &ownership)
+{
+  if (lmp->update->whichflag != 2) refuse_steps(lmp);
+  const Atom *atom = lmp->atom;
+  for (auto *other : lmp->modify->get_fix_list()) {
+    if (other == fix || !other->time_integrate) continue;
+    tagint shared = 0;
+    for (int i = 0; i < atom->nlocal; ++i)
+      if (ownership.in_body(i) && fleet.moves(other, atom, i)) shared = atom->tag[i];
+    shared = over_ranks(MPI_MAX, shared, lmp->world);
+    if (shared)
+      lmp->error->all(FLERR,
+                      "Fix gear/quat: atom {} is also moved by {}; take it out of the group of one "
+                      "of the two",
+                      shared, name_of(other));
+  }
+}
+
+/* ----------------------------------------------------------------------
+   molecules that are only partly in bodies
+------------------------------------------------------------------------- */
+
+namespace {
+
+/// The kinds of atoms that a molecule has.
+struct Membership {
+  int in_body, unmoved;    ///< unmoved: in no body, and no fix moves it
+  void merge(const Membership &other)
+  {
+    in_body |= other.in_body;
+    unmoved |= other.unmoved;
+  }
+};
+
+}    // namespace
+
+void GearQuat::warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
+                                         const Ownership &ownership)
+{
+  const Atom *atom = lmp->atom;
+  if (!atom->molecule_flag) return;
+  std::vector<tagint> molecule(atom->molecule, atom->molecule + atom->nlocal);
+  for (auto &id : molecule) id = std::max(id, (tagint) 0);
+  const Parts parts(lmp->comm, lmp->world, molecule.data(), atom->nlocal);
+  std::vector<Membership> memberships(parts.number(), {0, 0});
+  for (int part = 0; part < parts.number(); ++part)
+    for (const int i : parts.atoms(part)) {
+      const int inside = ownership.in_body(i);
+      memberships[part].merge({inside, !inside && !is_moved(lmp, fix, fleet, i)});
+    }
+  parts.merge(memberships);
+  tagint example = MAXTAGINT;
+  for (int part = 0; part < parts.number(); ++part)
+    if (memberships[part].in_body && memberships[part].unmoved)
+      example = std::min(example, parts.key(part));
+  example = over_ranks(MPI_MIN, example, lmp->world);
+  if (example != MAXTAGINT && lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        "Fix gear/quat: molecules such as {} are only partly in bodies, and no fix "
+                        "moves the rest; if all of these atoms are to move as rigid molecules, "
+                        "complete the bodies and their groups before this fix, as by \"group {} "
+                        "include molecule\"",
+                        example, lmp->group->names[fix->igroup]);
+}
 
 /* ----------------------------------------------------------------------
    papers to cite; LAMMPS shows the first line of each
@@ -102,15 +198,16 @@ constexpr double STILL = 0.0, MOVED_BY_OTHERS = -1.0;
 
 class Report : protected Pointers {
  public:
-  Report(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
-         const Bodies &bodies, Ownership &ownership, const Sites &sites) :
+  Report(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Bodies &bodies,
+         Ownership &ownership, const Sites &sites) :
       Pointers(lmp),
-      fix(fix), args(args), bodies(bodies), ownership(ownership), sites(sites), label(labels(fleet))
+      fix(fix), args(args), bodies(bodies), ownership(ownership), sites(sites)
   {
   }
-  void warn_of_own_pairs() const;
   std::string effects() const;
-  std::string advice() const;
+  /// Warns of own pairs that interact; returns sentences about pairs, each with a line for the input
+  /// script.
+  std::string pairs(const Fleet &fleet) const;
 
  private:
   const Fix *fix;
@@ -118,7 +215,6 @@ class Report : protected Pointers {
   const Bodies &bodies;
   Ownership &ownership;
   const Sites &sites;
-  const std::vector<double> label;    ///< of atoms, including ghosts: what moves them
 
   // bodies by their principal moments; moments are equal if they differ by less than 1e-7 of the
   // largest
@@ -127,7 +223,6 @@ class Report : protected Pointers {
   int top_of(const RigidBody &rigid) const;
   std::string settings() const;
   std::vector<double> labels(const Fleet &fleet) const;
-  template <class Visit> void visit_pairs(Visit visit) const;
   std::string exclude_own() const;
   bool meets_itself() const;
 };
@@ -220,28 +315,21 @@ std::string Report::effects() const
   if (large)
     ghosts += fmt::format("; {} bodies reach further than ghost atoms, all ranks have them", large);
   row("ghost bodies", count[OF_GHOSTS] > 0 || large > 0, ghosts);
-  const bool masks = !args.masks.empty();
-  row("masks", masks, masks ? "keywords force and torque" : "no keyword force or torque");
-  const ThermostatWords &temp = args.thermostat;
-  const bool isokinetic = args.isokinetic != Isokinetic::NONE;
-  if (temp.damp == 0.0)
-    row("isokinetic", isokinetic, isokinetic ? "keyword isokinetic" : "isokinetic none");
-  else if (temp.is_random())
-    row("thermostat", true,
-        fmt::format("langevin {:g} {:g} {:g} {}", temp.start, temp.stop, temp.damp, temp.seed));
-  else
-    row("thermostat", true,
-        fmt::format("temp {:g} {:g} {:g}, tchain {}, {}", temp.start, temp.stop, temp.damp,
-                    temp.length, temp.separate ? "separate" : "total"));
   row("virial", fix->thermo_virial != 0,
       fix->thermo_virial ? "in steps that ask for pressure or stress" : "fix_modify virial no");
   const std::string reader = reader_of_predicted_velocities(lmp, fix);
   row("predicted velocities", !reader.empty(), reader.empty() ? "nothing reads them" : reader);
-  row("compensated sums", args.scheme.compensate,
-      args.scheme.compensate ? "compensate yes" : "compensate no");
-  const bool changing = args.control.eps > 0.0;
-  row("changing step", changing, changing ? args.words_of_control() : "no tolerance");
-  if (args.pressure.any()) row("barostat", true, args.words_of_pressure());
+
+  const auto by_keyword = [&](const char *name, bool on, const std::string &keyword) {
+    row(name, on, (on ? "keyword " : "no keyword ") + keyword);
+  };
+  by_keyword("masks", !args.masks.empty(), "force or torque");
+  by_keyword("isokinetic", args.isokinetic != Isokinetic::NONE, "isokinetic");
+  by_keyword("thermostat", args.thermostat.damp > 0.0,
+             args.thermostat.is_random() ? "langevin" : "temp");
+  by_keyword("barostat", args.pressure.any(), "of a pressure");
+  by_keyword("changing step", args.control.eps > 0.0, "tolerance");
+  by_keyword("compensated sums", args.scheme.compensate, "compensate");
   return text;
 }
 
@@ -252,56 +340,69 @@ std::string Report::effects() const
 std::vector<double> Report::labels(const Fleet &fleet) const
 {
   std::vector<double> made(atom->nlocal + atom->nghost, STILL);
-  for (auto *other : modify->get_fix_list())
-    for (int i = 0; i < atom->nlocal && other->time_integrate && other != fix; ++i)
-      if (fleet.moves(other, atom, i)) made[i] = MOVED_BY_OTHERS;
   for (int i = 0; i < atom->nlocal; ++i)
-    if (ownership.in_body(i)) made[i] = (double) ownership.id_of(i);
+    if (ownership.in_body(i))
+      made[i] = (double) ownership.id_of(i);
+    else if (is_moved(lmp, fix, fleet, i))
+      made[i] = MOVED_BY_OTHERS;
   ownership.spread_labels(made);
   return made;
 }
 
-/// visit(i, j, bonded): the pairs in the neighbor lists of pair styles in every step.
-template <class Visit> void Report::visit_pairs(Visit visit) const
+std::string Report::pairs(const Fleet &fleet) const
 {
-  for (int which = 0; which < neighbor->nlist; ++which) {
+  constexpr double WORTH = 0.01;                      // minimum share of pairs for a line
+  const std::vector<double> label = labels(fleet);    // of atoms, including ghosts: what moves them
+  const bool is_own = !meets_itself(), acts = exerts_forces(force->pair, force->pair_style);
+  bigint here[4] = {};                      // pairs, among still atoms, within bodies; still atoms
+  using Example = std::array<tagint, 3>;    // body, two of its atoms, whose forces are not excluded
+  std::vector<Example> found;               // the first body on this rank
+  const auto visit = [&](int i, int j, int bonded) {
+    ++here[0];
+    if (label[i] != label[j] || label[i] == MOVED_BY_OTHERS) return;
+    ++here[label[i] == STILL ? 1 : 2];
+    if (!is_own || !acts || label[i] == STILL) return;
+    if (force->special_lj[bonded] == 0.0 && force->special_coul[bonded] == 0.0) return;
+    if (distance2(atom->x[i], atom->x[j]) >= force->pair->cutsq[atom->type[i]][atom->type[j]])
+      return;
+    const auto [one, other] = std::minmax(atom->tag[i], atom->tag[j]);
+    const Example example = {(tagint) label[i], one, other};
+    if (found.empty() || example < found[0]) found.assign(1, example);
+  };
+  for (int which = 0; which < neighbor->nlist; ++which) {    // of pair styles in every step
     const NeighList *list = neighbor->lists[which];
     if (!list || list->requestor_type != NeighList::PAIR || list->occasional || list->kokkos ||
         !list->ilist)
       continue;
     for (int ii = 0; ii < list->inum; ++ii) {
       const int i = list->ilist[ii];
-      const int *neighbors = list->firstneigh[i];
-      for (int jj = 0; jj < list->numneigh[i]; ++jj)
-        visit(i, neighbors[jj] & NEIGHMASK, neighbors[jj] >> SBBITS & 3);
+      for (int jj = 0; jj < list->numneigh[i]; ++jj) {
+        const int j = list->firstneigh[i][jj];
+        visit(i, j & NEIGHMASK, j >> SBBITS & 3);
+      }
     }
   }
-}
-
-constexpr char WITH_KSPACE[] =
-    " (LAMMPS then warns of exclusions with a kspace style; the part of that style in this "
-    "energy remains, and is constant, too)";
-
-/// Sentences, each with a line for the input script.  Collective.
-std::string Report::advice() const
-{
-  constexpr double WORTH = 0.01;    // minimum share of pairs for a line
-  bigint here[4] = {};              // pairs, among still atoms, within bodies; still atoms
-  visit_pairs([&](int i, int j, int /*bonded*/) {
-    ++here[0];
-    if (label[i] != label[j] || label[i] == MOVED_BY_OTHERS) return;
-    ++here[label[i] == STILL ? 1 : 2];
-  });
   here[3] = std::count(label.begin(), label.begin() + atom->nlocal, STILL);
   const auto all = over_ranks(MPI_SUM, here, world);
+  const auto examples = gather_sorted(found, world);
+  if (!examples.empty() && comm->me == 0) {
+    // the energy of overlapping atoms may be so large that all others are lost in rounding
+    const auto [body, one, other] = examples.front();
+    error->warning(FLERR,
+                   "Fix gear/quat {}: pair style {} acts between atoms of the same body, such as "
+                   "{} and {} of body {}; these forces do not move bodies, but they take time and "
+                   "add a constant to the energy, which is large where atoms overlap; the line "
+                   "that leaves them out: {}",
+                   fix->id, force->pair_style, one, other, body, exclude_own());
+  }
+
   std::string text;
   const auto add = [&](bigint some, const std::string &what, const std::string &line) {
     if (some == 0 || (double) some < WORTH * (double) all[0]) return;
     text +=
         fmt::format("  {} of {} pairs in the neighbor lists ({:.0f} %) are {}; without them, and "
-                    "the constant they add to the energy{}:\n    {}\n",
-                    some, all[0], 100.0 * (double) some / (double) all[0], what,
-                    force->kspace ? WITH_KSPACE : "", line);
+                    "the constant they add to the energy:\n    {}\n",
+                    some, all[0], 100.0 * (double) some / (double) all[0], what, line);
   };
   std::vector<std::string> moving;
   for (auto *other : modify->get_fix_list())
@@ -312,36 +413,8 @@ std::string Report::advice() const
   add(args.pressure.any() ? 0 : all[1], fmt::format("among {} atoms that no fix moves", all[3]),
       fmt::format("group still subtract all {}; neigh_modify exclude group still still",
                   utils::join_words(moving, " ")));
-  if (!meets_itself()) add(all[2], "within bodies and do not move them", exclude_own());
+  add(is_own ? all[2] : 0, "within bodies and do not move them", exclude_own());
   return text;
-}
-
-/// The energy of overlapping atoms of a body may be so large that all other energies are lost in
-/// rounding.
-void Report::warn_of_own_pairs() const
-{
-  if (!exerts_forces(force->pair, force->pair_style) || meets_itself()) return;
-  using Example = std::array<tagint, 3>;    // body, two of its atoms
-  std::vector<Example> found;               // the first body on this rank
-  visit_pairs([&](int i, int j, int bonded) {
-    if (label[i] != label[j] || label[i] <= STILL) return;
-    if (force->special_lj[bonded] == 0.0 && force->special_coul[bonded] == 0.0) return;
-    if (distance2(atom->x[i], atom->x[j]) >= force->pair->cutsq[atom->type[i]][atom->type[j]])
-      return;
-    const auto [one, other] = std::minmax(atom->tag[i], atom->tag[j]);
-    const Example example = {(tagint) label[i], one, other};
-    if (found.empty() || example < found[0]) found.assign(1, example);
-  });
-  const auto all = gather_sorted(found, world);
-  if (all.empty() || comm->me != 0) return;
-  const auto [body, one, other] = all.front();
-  error->warning(FLERR,
-                 "Fix gear/quat {}: pair style {} acts between atoms of the same body, such as {} "
-                 "and {} of body {}; these forces do not move bodies, but they take time and add a "
-                 "constant to the energy, which is large where atoms overlap; the line that leaves "
-                 "them out{}: {}",
-                 fix->id, force->pair_style, one, other, body, force->kspace ? WITH_KSPACE : "",
-                 exclude_own());
 }
 
 /// True if a body may be large enough to interact with its periodic image, so that these forces
@@ -360,25 +433,21 @@ bool Report::meets_itself() const
 
 std::string Report::exclude_own() const
 {
+  using Style = Arguments::BodyStyle;
+  if (args.bodystyle == Style::GROUP) {
+    std::string line = "neigh_modify";
+    for (const auto &body : args.groups) line += fmt::format(" exclude group {0} {0}", body);
+    return line;
+  }
   std::string name = group->names[fix->igroup], before;
   if (!args.points.empty()) {    // flexible molecules keep the forces between their atoms
     before = fmt::format("group rigid subtract {} {}; ", name, args.points);
     name = "rigid";
   }
-  switch (args.bodystyle) {
-    case Arguments::BodyStyle::MOLECULE:
-      return before + "neigh_modify exclude molecule/intra " + name;
-    case Arguments::BodyStyle::SINGLE:
-      return before + fmt::format("neigh_modify exclude group {0} {0}", name);
-    case Arguments::BodyStyle::GROUP: {
-      std::string line = "neigh_modify";
-      for (const auto &body : args.groups) line += fmt::format(" exclude group {0} {0}", body);
-      return line;
-    }
-    default:
-      return before + "neigh_modify exclude molecule/intra " + name +
-          ", with a molecule ID for every body";
-  }
+  if (args.bodystyle == Style::SINGLE)
+    return before + fmt::format("neigh_modify exclude group {0} {0}", name);
+  return before + "neigh_modify exclude molecule/intra " + name +
+      (args.bodystyle == Style::CUSTOM ? ", with a molecule ID for every body" : "");
 }
 
 }    // namespace
@@ -386,9 +455,9 @@ std::string Report::exclude_own() const
 void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
                             const Bodies &bodies, Ownership &ownership, const Sites &sites)
 {
-  const Report report(lmp, fix, args, fleet, bodies, ownership, sites);
-  report.warn_of_own_pairs();
+  const Report report(lmp, fix, args, bodies, ownership, sites);
+  const std::string of_pairs = report.pairs(fleet);
   if (!args.report) return;
-  const std::string text = report.effects() + report.advice();
+  const std::string text = report.effects() + of_pairs;
   if (lmp->comm->me == 0) utils::logmesg(lmp, text);
 }

@@ -3,8 +3,9 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* The log: papers to cite, and the report on this simulation, which says what is on, what is off and
-   why, and which pairs of atoms cost time and move nothing. */
+/* Before a run: what is refused, probable mistakes of which rank 0 warns, papers to cite, and the
+   report about the simulation: what is on, what is off and why, and which pairs of atoms cost time
+   and move nothing.  All are collective. */
 
 #ifndef LMP_GEAR_QUAT_REPORT_H
 #define LMP_GEAR_QUAT_REPORT_H
@@ -25,9 +26,18 @@ struct Fleet;
 /// The papers to cite, for the fix and for each feature in use.
 void add_citations(LAMMPS *lmp, const Arguments &args);
 
+/// Ends the run on all ranks with a reason: a time step of zero, r-RESPA with different steps, or
+/// atoms that another fix moves too.
+void refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Ownership &ownership);
+
+/// Warns of molecules with atoms in bodies and others that no fix moves; before the first run, when
+/// all fixes are defined.
+void warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
+                               const Ownership &ownership);
+
 /// Writes the report to screen and log on rank 0, if args.report requests it, and in any case warns
-/// of a pair style that acts between atoms of a body.  Collective; to be called in setup(), when
-/// neighbor lists are built and bodies have their ghosts.
+/// of a pair style that acts between atoms of a body; to be called in setup(), when neighbor lists
+/// are built and bodies have their ghosts.
 void report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
                   const Bodies &bodies, Ownership &ownership, const Sites &sites);
 

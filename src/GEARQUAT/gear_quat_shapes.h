@@ -3,11 +3,16 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Mass properties: principal axes and moments of bodies, and sites of finite size.
+/* Mass properties: principal axes and moments of bodies, and sites of finite size; the rigid motion
+   nearest to motions of sites.
 
    Sites of finite size: moments of inertia about their own center, in their own frame, which is the
    frame of their principal axes, and their orientation in a body.  `own` in a name refers to this
-   frame.  Moments in mass * length^2. */
+   frame.  Moments in mass * length^2.
+
+   The rigid motion of a body that is nearest to given displacements of its n sites, with equal
+   weights (doc/theory.md, Energy minimization), is for small motions a linear problem, for large
+   motions the orthogonal Procrustes problem.  Fixed components do not move. */
 
 #ifndef GEAR_QUAT_SHAPES_H
 #define GEAR_QUAT_SHAPES_H
@@ -80,6 +85,55 @@ inline void site_orientation(const double *q_body, const double *relative, doubl
   w_times(q_body, relative, q_own);
   project_norm(q_own);
 }
+
+/* ---------------------------------------------------------------------- */
+
+/// Sums over the arms d of the sites of a body, from its center of mass.
+struct ArmSums {
+  double arm[3];
+  double products[9];    ///< d_a d_b, row-major, lengths squared
+};
+
+/// Sums over the displacements u of the sites of a body.
+struct Displacements {
+  double way[3];
+  double products[9];    ///< u_a d_b, row-major
+};
+
+/// The arms of n sites, in space.
+struct Arms {
+  double number;    ///< of sites
+  ArmSums sums;
+
+  /// The sums in space for a body with these axes (space -> body), from sums along its axes.
+  Arms in_space(const double *axes) const
+  {
+    Arms out = {number, {}};
+    to_space(axes, sums.arm, out.sums.arm);
+    tensor_to_space(axes, sums.products, out.sums.products);
+    return out;
+  }
+};
+
+/// A small rigid motion: site i moves by way + turn x arm_i.
+struct Twist {
+  double way[3];     ///< of the center of mass
+  double turn[3];    ///< in radians, in space
+};
+
+/// The twist nearest to vectors v_i on the sites.  sums: of v_i and of arm_i x v_i, as force and
+/// torque.  Rotations that move no site are zero.
+Twist nearest_twist(const Arms &arms, Mask off, const Load &sums);
+
+/// A rigid motion of any size.
+struct Move {
+  double way[3];         ///< of the center of mass
+  double rotation[4];    ///< in space: q becomes rotation * q
+};
+
+/// The move nearest to the displacements u_i of the sites, by the Gauss-Newton method from the
+/// present pose, which is near the solution.
+Move nearest_move(const Arms &arms, Mask off, const Displacements &sums);
 
 }    // namespace LAMMPS_NS::GearQuat
 

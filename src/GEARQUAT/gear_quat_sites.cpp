@@ -335,10 +335,7 @@ void Sites::refuse_tears() const
     const double few = SAME_LENGTH * (domain->xprd + domain->yprd + domain->zprd);
     const tagint id = bodies.body_at(site.body).id;
     if (whole_periods_away(domain, change, further)) here[0] = id;
-    if (!same_box &&
-        (std::fabs(further) > SAME_SHAPE * length(before) + few ||
-         moved_with_faces(domain, ownership.box().data(), change)))
-      here[1] = id;
+    if (!same_box && std::fabs(further) > SAME_SHAPE * length(before) + few) here[1] = id;
   }
   const auto all = over_ranks(MPI_MAX, here, world);
   if (all[0])

@@ -5,7 +5,6 @@
 
 #include "gear_quat_step.h"
 
-#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"

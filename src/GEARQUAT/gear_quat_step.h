@@ -26,9 +26,9 @@
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_bath.h"
-#include "gear_quat_fixes.h"
 #include "gear_quat_forces.h"
 #include "gear_quat_stability.h"
+#include "gear_quat_styles.h"
 #include "gear_quat_tolerance.h"
 
 #include <array>

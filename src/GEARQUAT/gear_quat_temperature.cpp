@@ -6,8 +6,8 @@
 #include "gear_quat_temperature.h"
 
 #include "gear_quat_box.h"
-#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
+#include "gear_quat_styles.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -296,4 +296,70 @@ void Temperature::fields(Fields &v)
   double found = start;
   v(found);
   if (v.reads() && of_bodies) start = stop = found;
+}
+
+/* ----------------------------------------------------------------------
+   keyword isokinetic
+------------------------------------------------------------------------- */
+
+void IsokineticConstraint::sum()
+{
+  constexpr size_t N = sizeof(KineticSums) / sizeof(double);
+  reduce(MPI_SUM, &here.force_power, &sums.force_power, N, world);
+  here = KineticSums();
+  alpha = GearQuat::multipliers(mode, sums);
+}
+
+void IsokineticConstraint::sum_present()
+{
+  here = KineticSums();
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    here.add(bodies.rigid_of(ibody), bodies.load_of(ibody), bodies.state_of(ibody));
+  sum();
+}
+
+void IsokineticConstraint::begin_run(bool anew)
+{
+  sum_present();
+  refuse_rest();
+  if (!anew && counted == bodies.number()) return;
+  target = sums;
+  counted = bodies.number();
+}
+
+/// Without kinetic energy the multiplier is undefined: NOTHING is rounding, relative to the whole.
+void IsokineticConstraint::refuse_rest() const
+{
+  constexpr double NOTHING = 1.0e-24;
+  int turns = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    if (bodies.rigid_of(ibody).rotational_freedoms() > 0) turns = 1;
+  turns = over_ranks(MPI_MAX, turns, world);
+
+  const bool separate = mode == Isokinetic::SEPARATE;
+  const double least = NOTHING * (sums.translation + sums.rotation);
+  const char *missing = nullptr;
+  if (least <= 0.0)
+    missing = "";
+  else if (separate && sums.translation <= least)
+    missing = "translational ";
+  else if (separate && turns && sums.rotation <= least)
+    missing = "rotational ";
+  if (missing)
+    error->all(FLERR,
+               "Fix gear/quat isokinetic {}: the {}kinetic energy of the bodies is zero and would "
+               "stay so; give them velocities first",
+               separate ? "separate" : "total", missing);
+}
+
+double IsokineticConstraint::end_passes()
+{
+  sum();
+  if (counted != bodies.number()) {    // some were removed, with their energy
+    target = sums;
+    counted = bodies.number();
+  }
+  factor = scale_factors(mode, target, sums);
+  if (!scales) return 0.0;
+  return 0.5 * (sums.translation + sums.rotation - target.translation - target.rotation);
 }

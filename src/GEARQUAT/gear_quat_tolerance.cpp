@@ -5,8 +5,8 @@
 
 #include "gear_quat_tolerance.h"
 
-#include "gear_quat_known_styles.h"
 #include "gear_quat_ranks.h"
+#include "gear_quat_styles.h"
 
 #include "comm.h"
 #include "compute.h"

@@ -363,7 +363,7 @@ PRESSURES = {
     "fix nph": ("molecule iso 1 1 1", "", "fix d all nph iso 1 1 1", "Must not have multiple fixes change box parameter x"),
     "press/berendsen": ("molecule iso 1 1 1", "", "fix d all press/berendsen iso 1 1 1", "Must not have multiple fixes change box parameter x"),
     "fast": ("molecule iso 1 1 0.001", "", "", "Pdamp"),
-    "far": ("molecule iso 1e9 1e9 1000", "", "", "begin nearer to the target pressure, or use a Pdamp of"),
+    "far": ("molecule iso 1e9 1e9 1000", "", "", "begin nearer to the target pressure, or use a longer Pdamp"),
     "fix_modify press": ("molecule iso 1 1 1", "", "fix_modify move press thermo_press", "has no fix_modify press: it uses the molecular pressure"),
 }
 

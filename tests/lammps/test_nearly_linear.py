@@ -1,4 +1,4 @@
-"""Bodies with a small moment of inertia: followed, or refused before the first step with the moment named."""
+"""Bodies with a small moment of inertia: followed, or refused before the first step."""
 
 import re
 
@@ -21,16 +21,13 @@ def carbon_dioxide(bend, spin, tumble=0.002, words="", dt=1.0, steps=200, n=1, *
     return placed(bodies, velocities, kinds=[1, 2, 1] * n, **settings)
 
 
-@pytest.mark.parametrize("bend, smallest", [(0.02, 0.0034932), (0.002, 3.4932e-05)])
-def test_refused_with_the_smallest_moment(lmp_wheel, bend, smallest):
-    """The moment by hand: m_C 2 m_O / M times the square of the displacement."""
-    assert C * 2 * O / (2 * O + C) * bend**2 == pytest.approx(smallest, rel=1e-4)
-    told = r"body 1 moves by \S+ and turns by (\S+) radians in one step.*its moment of inertia about the axis of this rotation, (\S+), is small"
+@pytest.mark.parametrize("bend", [0.02, 0.002])
+def test_refused_before_the_first_step(lmp_wheel, bend):
+    told = r"body 1 moves by \S+ and turns by (\S+) radians in one step"
     for ranks in (1, 4):
         result = lmp_wheel.refuse(carbon_dioxide(bend, 4.0), "body 1 moves", ranks=ranks)
         assert not result.thermo and len(set(result.errors)) == 1
-        radians, moment = map(float, re.search(told, result.words).groups())
-        assert moment == pytest.approx(smallest, rel=1e-4, abs=2e-5) and radians == pytest.approx(4.0, rel=1e-3)
+        assert float(re.search(told, result.words)[1]) == pytest.approx(4.0, rel=1e-3)
 
 
 def test_what_is_followed_is_not_refused(lmp_wheel):
@@ -40,19 +37,11 @@ def test_what_is_followed_is_not_refused(lmp_wheel):
 
 
 def test_an_infile_makes_it_linear(lmp_wheel):
-    """The remedy in the message works."""
+    """The remedy in the manual works."""
     mass, inertia = 2 * O + C, 2 * O * LENGTH**2
     line = f"1\n1 {mass} 0 {C * 0.02 / mass} 0 0 {inertia} {inertia} 0 0 0 0 0 0 0 0 0.1 0 0 0\n"
     (lmp_wheel.folder / "bodies").write_text(line)
     lmp_wheel.succeed(carbon_dioxide(0.02, 4.0, words="infile bodies", dt=2.0))
-
-
-def test_the_blow_up_names_the_moment(lmp_wheel):
-    """A torque accelerates the rotation during the run."""
-    push = "group carbon type 2\nvariable push atom 1.0*step\nfix push carbon addforce 0 0 v_push"
-    deck = carbon_dioxide(0.02, 0.0, steps=1000, after=push)
-    message = "its moment of inertia about the axis of this rotation, 0.003"
-    assert "blow-up in step" in lmp_wheel.refuse(deck, message).words
 
 
 def test_a_run_of_no_steps_is_not_refused(lmp_wheel):
@@ -72,10 +61,8 @@ def patchy(light, words="", omega=800.0):
 
 
 def test_patches_without_mass(lmp_wheel):
-    """No step is advised, since the rotation is an artifact of the masses; the remedy works."""
-    told = "is small for its size; state a larger one, or 0 along this axis, by an infile"
-    result = lmp_wheel.refuse(patchy(1e-6), told)
-    assert "time step" not in result.words
+    """Moments in an infile are the remedy, since the rotation is an artifact of the masses."""
+    lmp_wheel.refuse(patchy(1e-6), "blow-up in step")
     lmp_wheel.succeed(patchy(0.5, omega=10.0))
     line = "1\n1 1.0 0 0 0 0.1 0.1 0.2 0 0 0 0 0 0 0 0 2.0 0 0 0\n"
     (lmp_wheel.folder / "bodies").write_text(line)

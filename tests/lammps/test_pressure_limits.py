@@ -1,10 +1,10 @@
-"""Constant pressure: messages about a box that oscillates too fast, or becomes too narrow."""
+"""Constant pressure: messages about a box that oscillates too fast."""
 
 import re
 
 import numpy as np
 import pytest
-from pressed import ARMS, pressed, trimers
+from pressed import pressed, trimers
 from scenes import largest_change
 
 # --- the frequency of the box --------------------------------------------------------------------
@@ -58,7 +58,7 @@ def test_a_box_that_oscillates_too_fast(lmp_wheel):
     """The printed radians agree with the volume in a run, for any method; Pdamp is as long as needed."""
     omega = volume_frequency(lmp_wheel)
     for words, fastest in SCHEMES.items():
-        dt = {part: part * fastest / omega for part in (0.58, 0.63, 0.75, 0.9, 1.3)}
+        dt = {part: part * fastest / omega for part in (0.58, 0.63, 0.75, 0.9)}
         assert not TOLD.search(lmp_wheel.succeed(crystal(words, dt[0.58], "run 500")).words)
         for part in (0.63, 0.75, 0.9):
             result = lmp_wheel.succeed(crystal(words, dt[part], "run 500\nrun 500"))
@@ -69,28 +69,9 @@ def test_a_box_that_oscillates_too_fast(lmp_wheel):
             assert printed(limit, 0.6 * fastest, 0.01)
             # the method is stable with it
             assert largest_change(result.thermo[1]) < 0.02
-        words_of_run = lmp_wheel.run(crystal(words, dt[1.3], "run 500")).words
-        *_, pdamp = LONGER.findall(words_of_run)
-        assert float(pdamp) > 1.05 * 1.3 / 0.6 * 0.95
-        assert not TOLD.search(lmp_wheel.succeed(crystal(words, dt[1.3], "run 1500", pdamp)).words)
-
-
-@pytest.mark.parametrize("words", ["temp 1 1 0.5 iso 1 1", "iso 1 1", "temp 1 1 0.5 iso 300 300"])
-def test_a_box_far_from_its_target(lmp_wheel, words):
-    """With the Pdamp that the error advises there is no message."""
-    trimers(lmp_wheel.folder / "data.trimers")
-    result = lmp_wheel.refuse(pressed(f"{words} 0.001", 0.005, 2000), "Fix gear/quat: ")
-    *_, advised = LONGER.findall(result.words)
-    result = lmp_wheel.succeed(pressed(f"{words} {advised}", 0.005, 2000))
-    assert "WARNING: Fix" not in result.output
-
-
-def test_a_box_that_moves_too_fast_later(lmp_wheel):
-    """With a Pdamp just above the one that ends the run at once; the error states one that is long enough."""
-    trimers(lmp_wheel.folder / "data.trimers")
-    result = lmp_wheel.refuse(pressed("iso 1 1 0.05", 0.005, 2000), "would change its length along x")
-    *_, advised = re.findall(r"use a Pdamp of (\S+) or longer", result.words)
-    assert "WARNING: Fix" not in lmp_wheel.succeed(pressed(f"iso 1 1 {advised}", 0.005, 2000)).output
+        *_, pdamp = LONGER.findall(result.words)
+        assert float(pdamp) > 1.05 * 0.9 / 0.6 * 0.95
+        assert not TOLD.search(lmp_wheel.succeed(crystal(words, dt[0.9], "run 1500", pdamp)).words)
 
 
 def test_steps_that_change_follow_the_box(lmp_wheel):
@@ -117,20 +98,3 @@ def test_no_edge_along_z_in_two_dimensions(lmp_wheel, tied):
     trimers(lmp_wheel.folder / "data.flat", flat=True)
     deck = pressed(f"x 1 1 1 y 1 1 1 couple {tied}", dimension=2, data="data.flat")
     lmp_wheel.refuse(deck, "in two dimensions there is no edge along z; use couple xy")
-
-
-# --- a box as narrow as a body -----------------------------------------------------------------
-
-NARROW = re.compile(r"in step (\d+) the edge of the box along (.), (\S+), would be shorter than a body, whose atoms are (\S+) apart")
-
-
-@pytest.mark.parametrize("spacing, words", [(0.25, "iso 1 1 10"), (1.0, "iso 30000 30000 20"), (1.0, "z 30000 30000 20")])
-def test_an_edge_shorter_than_a_body(lmp_wheel, spacing, words):
-    """At the beginning of a run and in a run, before atoms are lost."""
-    trimers(lmp_wheel.folder / "data.trimers", spacing=spacing)
-    deck = pressed(words + " ptemp 1.0", 0.002, 20000, before="neigh_modify one 20000 page 200000")
-    result = lmp_wheel.refuse(deck, "use more bodies, a smaller target pressure, or iso")
-    step, axis, edge, apart = NARROW.search(result.words).groups()
-    assert (step == "0") == (spacing == 0.25) and axis in words.partition(" ")[0].replace("iso", "x")
-    longest = max(np.linalg.norm(a - b) for a in ARMS for b in ARMS)
-    assert 0.5 * longest < float(apart) <= longest + 1e-4 and float(edge) <= float(apart)

@@ -60,17 +60,7 @@ def counted(lines):
 def test_once_and_short_by_default(lmp):
     lines = report(lmp, two_molecules(after="run 2\nrun 2"))
     assert TITLE.match(lines[0]).groups() == ("move", "2", "3", "12")
-    assert 5 <= len(effects(lines)) <= len(lines) - 1 <= 14
-
-
-@pytest.mark.parametrize("words, said", [
-    ("tolerance 1e-8", "tolerance 1e-08 length"),
-    ("tolerance 2e-8 energy 0.5 every/time 3", "tolerance 2e-08 energy 0.5, every/time 3"),
-    ("dtmax 0.02 tolerance 1e-8 length dtmin 1e-9", "tolerance 1e-08 length, dtmin 1e-09, dtmax 0.02"),
-])  # fmt: skip
-def test_the_tolerance_as_in_the_command(lmp_tree, words, said):
-    lines = report(lmp_tree, two_molecules(f"molecule {words}"))
-    assert effects(lines)["changing step"] == f"on {said}"
+    assert 5 <= len(effects(lines)) <= len(lines) - 1 <= 16
 
 
 def test_no_is_silent(lmp_tree):
@@ -127,7 +117,7 @@ EFFECTS = [
     (QUIET, 1, "virial", "off fix_modify virial no"),
     (two_molecules(), 1, "predicted velocities", "off *"),
     (QUIET, 1, "predicted velocities", "on fix drag (viscous) may read them"),
-    (two_molecules("molecule compensate yes"), 1, "compensated sums", "on compensate yes"),
+    (two_molecules("molecule compensate yes"), 1, "compensated sums", "on keyword compensate"),
     (SPHERE, 1, "finite size", "on 1 sites are more than points"),
     (POINTS, 1, "finite size", "off all sites are points"),
     (two_molecules(), 1, "ghost bodies", "off one rank"),
@@ -256,7 +246,7 @@ def test_a_lone_site_is_a_point_to_the_last_bit(lmp_tree):
 
 # --- significance ---------------------------------------------------------------------------------
 def test_exclusions_with_kspace_change_a_constant(lmp_tree):
-    """The report says that LAMMPS will warn; the motion is the same."""
+    """LAMMPS warns of such exclusions; the motion is the same."""
     data = water_data(lmp_tree.folder / "data.water", shift=1.65)
     ends = []
     for exclude in ("", "neigh_modify exclude molecule/intra all"):
@@ -265,8 +255,6 @@ def test_exclusions_with_kspace_change_a_constant(lmp_tree):
         coulomb = "pair_style coul/long 4.0\nkspace_style ewald 1.0e-10\npair_coeff * *"
         deck = re.sub("pair_style.*\n(pair_coeff.*\n)*", f"{coulomb}\n", deck)
         result = lmp_tree.succeed(deck)
-        text = "\n".join(lines_of(result))
-        assert ("LAMMPS then warns of exclusions with a kspace style" in text) == (not exclude)
         assert ("exclusions used with KSpace" in result.output) == bool(exclude)
         ends.append((result.thermo[-1]["PotEng"], last_frame(lmp_tree.folder / "poses.dump")))
     (energy, frame), (excluded, excluded_frame) = ends

@@ -17,7 +17,7 @@ from running import ROOT, tree_source
 
 SOURCES = ROOT / "src" / "GEARQUAT"
 ARGUMENTS = (SOURCES / "gear_quat_arguments.cpp").read_text()
-STYLES = (SOURCES / "gear_quat_known_styles.cpp").read_text()
+STYLES = (SOURCES / "gear_quat_styles.cpp").read_text()
 MANUAL = (ROOT / "doc" / "src" / "fix_gear_quat.rst").read_text()
 LIMITS = (ROOT / "doc" / "theory.md").read_text().partition("## Limits of stability")[2].partition("\n## ")[0]
 

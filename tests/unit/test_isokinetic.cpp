@@ -1,5 +1,5 @@
 /* Constant kinetic energy: multipliers, an exact solution, order of kinetic energy and heat, and
-   the effect of scaling momenta.  `Host` replaces gear_quat_isokinetic and the start. */
+   the effect of scaling momenta.  `Host` replaces IsokineticConstraint and the start. */
 
 #include "checks.h"
 #include "drive.h"

@@ -1,7 +1,7 @@
-/* gear_quat_nearest.h: the rigid motion nearest to displacements of sites. */
+/* gear_quat_shapes.h: the rigid motion nearest to displacements of sites. */
 
 #include "checks.h"
-#include "gear_quat_nearest.h"
+#include "gear_quat_shapes.h"
 
 using namespace LAMMPS_NS::GearQuat;
 using std::vector;
