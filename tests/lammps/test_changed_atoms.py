@@ -1,6 +1,5 @@
 """Atoms that commands move relative to their body."""
 
-import numpy as np
 import pytest
 from scenes import water
 
