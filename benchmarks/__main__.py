@@ -13,40 +13,22 @@ from benchmarks.engine.publish import PublishError
 
 
 def list_studies(_context, _option, wanted):
-    """--list: every study with its duration and its parts."""
+    """--list: every study with its duration and its pages."""
     if not wanted:
         return
     for study in all_studies().values():
         minutes = max(1, round(study.seconds / 60))
-        click.echo(f"{study.key:14} {minutes:4} min  {study.title} (doc/{study.page}.md)")
-        for part in study.parts:
-            click.echo(f"    {study.key}/{part}")
+        click.echo(f"{study.key:12} {minutes:4} min  {study.title} ({', '.join(study.blocks)})")
     sys.exit()
 
 
 def chosen(names):
-    """List of (Study, named parts of the study)."""
-    known, parts = all_studies(), {}
+    """The studies with these names."""
+    known = all_studies()
     for name in names:
-        key, _, part = name.partition("/")
-        if key not in known:
-            raise click.UsageError(f"there is no study {key}; there are {', '.join(known)}")
-        if part and part not in known[key].parts:
-            there = ", ".join(known[key].parts) or "none"
-            raise click.UsageError(f"{key} has no part {part}; its parts: {there}")
-        parts.setdefault(key, []).extend([part] if part else [])
-    return [(known[key], tuple(own)) for key, own in parts.items()]
-
-
-def search(studies, wanted, seed, iterations):
-    """--search: print the results of a search."""
-    for study, _ in studies:
-        if study.search is None:
-            raise click.UsageError(f"{study.key} has nothing to search for")
-        try:
-            click.echo(study.search(wanted, seed, iterations))
-        except ValueError as error:
-            raise click.UsageError(str(error)) from error
+        if name not in known:
+            raise click.UsageError(f"there is no study {name}; there are {', '.join(known)}")
+    return [known[name] for name in dict.fromkeys(names)]
 
 
 def report(finding, check):
@@ -79,22 +61,15 @@ def report(finding, check):
 @click.option("--hours", type=click.FloatRange(min=0), default=1.0)
 @click.option("--lmp")
 @click.option("--out", type=click.Path(file_okay=False, path_type=Path))
-@click.option("--search", "wanted", type=int, metavar="N")
-@click.option("--seed", type=int, default=1)
-@click.option("--iterations", type=click.IntRange(min=1), default=60)
-def main(
-    names, out, publish_it, check, render_only, wanted=None, seed=1, iterations=60, **options
-):
+def main(names, out, publish_it, check, render_only, **options):
     """Measure the numbers on the pages of doc/; the head of the script explains the options."""
     failed, studies = 0, chosen(names)
-    if wanted is not None:
-        return search(studies, wanted, seed, iterations)
-    for study, parts in studies:
+    for study in studies:
         folder = out or ROOT / "build" / "benchmarks" / study.key
         if out and len(studies) > 1:
             folder = out / study.key
         try:
-            finding = conduct(study, folder, render_only, publish_it, parts=parts, **options)
+            finding = conduct(study, folder, render_only, publish_it, **options)
         except PublishError as error:
             raise click.UsageError(str(error)) from error
         except (LammpsError, FileNotFoundError) as error:
@@ -105,15 +80,11 @@ def main(
         sys.exit(1)
 
 
-#: the command examples/run: the same for one study without a search
+#: the command examples/run: the same for one study
 examples = click.Command(
     "examples/run",
     callback=partial(main.callback, ["cases"]),
-    params=[
-        option
-        for option in main.params
-        if option.name not in ("names", "wanted", "seed", "iterations", "hours")
-    ],
+    params=[option for option in main.params if option.name not in ("names", "hours")],
     context_settings=main.context_settings,
 )
 

@@ -1,15 +1,15 @@
 """One engine for all studies.
 
-A study is a module or a package of ``benchmarks/studies`` with a ``STUDY``, and a template
-``benchmarks/templates/PAGE.md.j2``.  No other file has to be changed: ``benchmarks/run`` finds the study.
+A study is a module or a package of ``benchmarks/studies`` with a ``STUDY``, and a template for each block that it
+writes into a page.  No other file has to be changed: ``benchmarks/run`` finds the study.
 
     from benchmarks.engine import Curve, Finding, Job, Measurement, Panel, Study, Table, deck
 
-    STUDY = Study("drift", "Energy over long runs", 600.0, measure, find)  # see study.py
+    STUDY = Study("cost", "Cost of a step", 180.0, measure, find, {"doc/accuracy.md": "cost.md.j2"})  # see study.py
 
 ``measure(lab)`` runs LAMMPS and returns plain data: numbers, arrays, dictionaries (their keys may be
 tuples) and dataclasses of these.  It makes no judgments.  The data are kept as JSON, which names dataclasses
-by their modules, and ``--render`` makes the page from them again.  So the ``Results``, ``Run`` and ``Plan``
+by their modules, and ``--render`` makes the blocks from them again.  So the ``Results``, ``Run`` and ``Plan``
 of a study are its own, are used in its modules only, and keep their names.  The Lab (lab.py) runs decks:
 
     lab.sweep(name, deck, axes, read, settings)   every combination of values of variables -> read(finished)
@@ -17,7 +17,7 @@ of a study are its own, are used in its modules only, and keep their names.  The
     lab.many(jobs, keep=True)                     the same, without jobs that are kept already (kept.py)
     lab.in_turn(jobs, rounds)                     one at a time, for timing -> {name: [Finished, ...]}
     lab.share(0.3)                                a context: its work fills that part of the progress bar
-    lab.quick, lab.full, lab.parts                the requested options
+    lab.quick, lab.full                           the requested options
 
 Where starting LAMMPS would take longer than the run, session.py keeps it in a process, times the ``run``
 command alone, and repeats competitors in turn until their medians are steady.
@@ -27,7 +27,7 @@ the template.  It runs nothing, so that tests can feed it data that must be refu
 its Measurement; ``--check`` compares with it, pages do not show it.  Pictures are tuples of Panels
 (panels.py), or functions that draw into a path.  Statistics are in statistics.py.
 
-Templates extend ``page.md.j2`` and fill its block ``body`` with sentences and with the definitions of page.py:
+Templates consist of sentences and of the definitions of page.py:
 
     {{ table("name") }}  {{ measured(measurements) }}  {{ picture("name", "Caption.") }}
     {{ x | to(".1e") }}  {{ n | grouped }}
@@ -35,6 +35,6 @@ Templates extend ``page.md.j2`` and fill its block ``body`` with sentences and w
 
 from .decks import EXAMPLES, ROOT, deck  # noqa: F401
 from .lab import Job, Lab  # noqa: F401
-from .panels import Bars, Curve, Panel, draw, floor  # noqa: F401
+from .panels import Curve, Panel, draw  # noqa: F401
 from .runner import LammpsError  # noqa: F401
 from .study import Finding, Measurement, Study, Table  # noqa: F401

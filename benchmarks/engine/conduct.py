@@ -31,7 +31,7 @@ def all_studies():
 
 @dataclass(frozen=True)
 class Origin:
-    """The origin of data: a sentence for the page, and ``whole``, True if they are the complete study."""
+    """The origin of data: a sentence for the page, and ``whole``, False if they are from a quick run."""
 
     sentence: str
     whole: bool
@@ -61,8 +61,7 @@ def measure(study, out, **options):
     at = provenance.commit("src", "benchmarks", "examples")
     with tqdm(total=1.0, bar_format=BAR, desc=study.key, disable=None) as bar, ticking(bar.refresh):
         data = study.measure(Lab(out, advance=bar.update, **options))
-    whole = not options.get("quick") and not options.get("parts")
-    origin = {"sentence": provenance.sentence(out, at), "whole": whole}
+    origin = {"sentence": provenance.sentence(out, at), "whole": not options.get("quick")}
     write_data(out / DATA, data)
     (out / ORIGIN).write_text(json.dumps(origin, indent=1), encoding="utf-8")
 
@@ -76,28 +75,28 @@ def results(study, out):
 
 
 def write(study, out, finding, origin):
-    """Write tables, pictures and the page to ``out``."""
+    """Write tables, pictures and the blocks of pages to ``out``."""
     rows = [(m.what, m.value, m.error, m.unit, m.remark) for m in finding.measurements]
     header = ("measurement", "value", "standard error", "unit", "remark")
     write_csv(out / "measurements.csv", header, rows)
     for name, table in finding.tables.items():
         write_csv(out / f"{name}.csv", table.header, table.rows)
-    folder = out / study.page
+    folder = out / study.key
     folder.mkdir(parents=True, exist_ok=True)
     for name, picture in finding.pictures.items():
         path = folder / file_of(name)
         picture(path) if callable(picture) else panels.draw(path, picture)
-    if origin.whole:
-        text = render(f"{study.page}.md.j2", study, finding, origin.sentence)
-        (out / f"{study.page}.md").write_text(text, encoding="utf-8")
+    for template in study.blocks.values():
+        text = render(template, study, finding, origin.sentence)
+        (out / template.removesuffix(".j2")).write_text(text, encoding="utf-8")
 
 
 def conduct(study, out, render_only=False, publish_it=False, **options):
     """Do all these steps; returns the Finding."""
     out = Path(out).resolve()
     if publish_it:
-        if options.get("quick") or options.get("parts"):
-            raise PublishError("--publish needs the whole study: leave out --quick and name no part")
+        if options.get("quick"):
+            raise PublishError("--publish needs the whole study: leave out --quick")
         check_places(study)
     if not render_only:
         measure(study, out, **options)

@@ -62,12 +62,12 @@ class Lab:
     """Runs jobs; ``out`` is the folder that gets ``logs`` and ``dumps``.
 
     ``jobs``: number of simultaneous runs.  ``quick`` and ``full``: whether the study should do less, or also very long
-    runs.  ``hours``: duration of a study that never ends by itself.  ``parts``: the requested parts of the study, all
-    if empty.  ``advance(part)`` receives the part of the work of the study that has been done since its last call.
+    runs.  ``hours``: duration of a study that never ends by itself.  ``advance(part)`` receives the part of the work of
+    the study that has been done since its last call.
     """
 
-    def __init__(self, out, lmp=None, jobs=2, quick=False, full=False, hours=1.0, parts=(), advance=None):
-        self.out, self.jobs, self.parts = Path(out), jobs, parts
+    def __init__(self, out, lmp=None, jobs=2, quick=False, full=False, hours=1.0, advance=None):
+        self.out, self.jobs = Path(out), jobs
         self.quick, self.full, self.hours = quick, full, hours
         self._lmp, self._lock = lmp, threading.Lock()
         self._weight = self._left = 1.0

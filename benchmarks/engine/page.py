@@ -1,4 +1,4 @@
-"""Pages from Jinja2 templates, in which the prose can be read and corrected as prose."""
+"""Blocks of pages from Jinja2 templates, in which the prose can be read and corrected as prose."""
 
 import jinja2
 
@@ -31,13 +31,12 @@ def rounded(number):
     return grouped(float(f"{number:.1e}"))
 
 
-def _environment(page, finding):
+def _environment(folder, finding):
     """Jinja2 with the filters and functions of the templates; undefined names are errors.
 
     ``x | to(".1e")`` formats a number, ``n | grouped`` a large one, and ``n | rounded`` keeps two digits of it.
     ``table(name)`` shows a table of the finding, ``measured(measurements)`` a table of
-    measurements, ``picture(name, caption)`` a picture with its caption.  Pictures of ``page`` are beside
-    it, in the folder of its name.
+    measurements, ``picture(name, caption)`` a picture with its caption.  Pictures are in a ``folder`` beside the page.
     """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
@@ -53,7 +52,7 @@ def _environment(page, finding):
     def measured(measurements):
         return markdown_table(("measurement", "value"), [(m.what, m.text) for m in measurements])
 
-    def picture(name, caption, folder=page):
+    def picture(name, caption):
         if name not in finding.pictures:
             raise KeyError(f"the study draws no picture {name}")
         return f"![{caption}]({folder}/{file_of(name)})\n\n*{caption}*"
@@ -65,6 +64,6 @@ def _environment(page, finding):
 
 def render(template, study, finding, provenance):
     """Text of a template of a study; ``provenance``: a sentence on the origin of the measurement."""
-    environment = _environment(study.page, finding)
-    names = {"study": study, "provenance": provenance, "measurements": finding.measurements}
-    return environment.get_template(template).render(**names, **finding.context).rstrip() + "\n"
+    environment = _environment(study.key, finding)
+    names = {"provenance": provenance, "measurements": finding.measurements}
+    return environment.get_template(template).render(**names, **finding.context).strip()

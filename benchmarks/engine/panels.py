@@ -20,7 +20,7 @@ class Curve:
     """One line of a panel: ``x``, ``y`` and, for error bars, ``error``, each (n,).
 
     ``color``: a name of style.COLOR or a color of matplotlib; ``line`` ("" for none) and ``marker``
-    are matplotlib's; ``width``: of the line; ``hollow``: markers are not filled.
+    are matplotlib's; ``width``: of the line.
     """
 
     label: str
@@ -31,27 +31,14 @@ class Curve:
     marker: str = ""
     error: np.ndarray = None
     width: float = None
-    hollow: bool = False
-
-
-@dataclass(frozen=True)
-class Bars:
-    """Horizontal bars: ``names`` from top to bottom, ``below`` in gray, and ``more`` on top."""
-
-    names: tuple
-    below: np.ndarray
-    more: np.ndarray
-    color: str = "momentum"
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes with ``curves``, which are a sequence of Curve or Bars.
+    """One pair of axes with ``curves``, a sequence of Curve.
 
-    ``log``: "x", "y" or "xy".  ``linear``: y is linear up to this size and logarithmic beyond, for
-    values of both signs.  ``ticks``: words for x = 0, 1, 2, ...; ``xticks``: the values at which x
-    is labeled.  ``xlim``, ``ylim``: ends of the axes.  ``lost``: (x, color) of runs that ended early,
-    drawn as crosses at the top.  ``legend``: whether the panel has its own legend, with this number of ``columns``.
+    ``log``: "x", "y" or "xy".  ``xticks``: the values at which x is labeled.  ``xlim``, ``ylim``: ends of the axes.
+    ``legend``: whether the panel has its own legend.
     """
 
     title: str
@@ -59,39 +46,20 @@ class Panel:
     ylabel: str
     curves: list
     log: str = "y"
-    ticks: tuple = ()
     xticks: tuple = ()
     xlim: tuple = None
     ylim: tuple = None
-    lost: tuple = ()
     legend: bool = True
-    columns: int = 3
-    linear: float = None
-
-
-def floor(values, least=1e-17):
-    """Sizes of values that can be drawn on a logarithmic axis."""
-    return np.maximum(np.abs(values), least)
 
 
 def _curve(axis, curve):
     look = {"color": COLOR.get(curve.color, curve.color), "label": curve.label}
     look |= {"linestyle": curve.line, "linewidth": curve.width, "marker": curve.marker}
-    look |= {"markersize": 3.5, "markerfacecolor": "white" if curve.hollow else None}
+    look |= {"markersize": 3.5}
     if curve.error is None:
         axis.plot(curve.x, curve.y, **look)
     else:
         axis.errorbar(curve.x, curve.y, yerr=curve.error, capsize=2, **look)
-
-
-def _bars(axis, bars):
-    axis.barh(bars.names, bars.below, color="#cccccc")
-    axis.barh(bars.names, bars.more, left=bars.below, color=COLOR[bars.color])
-    for k, (start, length) in enumerate(zip(bars.below, bars.more)):
-        text = f" {length:+.0f}" if k else f" {length:.0f}"
-        axis.annotate(text, (start + max(length, 0), k), va="center")
-    axis.invert_yaxis()
-    axis.set_xlim(right=1.2 * max(a + b for a, b in zip(bars.below, bars.more)))
 
 
 def _scales(axis, panel):
@@ -99,12 +67,6 @@ def _scales(axis, panel):
         axis.set_xscale("log")
     if "y" in panel.log:
         axis.set_yscale("log")
-    if panel.linear:
-        axis.set_yscale("symlog", linthresh=panel.linear, linscale=0.6)
-        axis.axhline(0.0, color="#666666", linewidth=0.6)
-    if panel.ticks:
-        axis.set_xticks(range(len(panel.ticks)), panel.ticks)
-        axis.margins(x=0.15)
     if panel.xticks:
         axis.set_xticks(panel.xticks, [f"{x:g}" for x in panel.xticks])
         axis.minorticks_off()
@@ -118,15 +80,11 @@ def draw_panel(axis, panel):
     """Draw one panel on ``axis``."""
     axis.set(xlabel=panel.xlabel, ylabel=panel.ylabel)
     axis.set_title(panel.title, loc="left", fontsize=9)
-    if isinstance(panel.curves, Bars):
-        return _bars(axis, panel.curves)
     for curve in panel.curves:
         _curve(axis, curve)
-    for x, color in panel.lost:
-        axis.plot(x, 0.99, "x", color=color, transform=axis.get_xaxis_transform())
     _scales(axis, panel)
     if panel.legend and any(curve.label for curve in panel.curves):
-        place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": panel.columns}
+        place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": 3}
         axis.legend(fontsize=7, **place)
 
 

@@ -1,4 +1,4 @@
-"""Put the page, the pictures and the blocks of a study into this checkout.
+"""Put the blocks and the pictures of a study into this checkout.
 
 A block is text that a study has written into a hand-written page, between two markers; the first marker names the
 command.
@@ -51,17 +51,12 @@ def check_places(study, root=ROOT):
 
 
 def publish(study, finding, provenance, out, root=ROOT):
-    """Copy page and pictures from ``out``, the folder of the run, and write the blocks.
-
-    Only pictures that the page or a block shows are copied.
-    """
-    page, folder = root / "doc" / f"{study.page}.md", root / "doc" / study.page
-    folder.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(out / page.name, page)
-    texts = [page.read_text(encoding="utf-8")]
+    """Write the blocks, and copy the pictures that they show from ``out``, the folder of the run."""
+    folder, texts = root / "doc" / study.key, []
     for name, template in study.blocks.items():
-        texts.append(render(template, study, finding, provenance).rstrip())
+        texts.append(render(template, study, finding, provenance))
         write_block(root / name, command_of(study), texts[-1])
-    for source in sorted((out / study.page).iterdir()):
-        if any(f"{study.page}/{source.name})" in text for text in texts):
+    for source in sorted((out / study.key).iterdir()):
+        if any(f"{study.key}/{source.name})" in text for text in texts):
+            folder.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(source, folder / source.name)

@@ -34,14 +34,12 @@ class RunError(LammpsError):
 class Outcome:
     """The outcome of a run, in the units of the run.
 
-    ``seconds``: wall time of the ``run`` command; ``modify``: LAMMPS' "Modify" time, NaN if its timers
-    are off; ``start``: force evaluations of the method's own start.  ``ids``, ``masses`` and
-    ``molecules`` (n,), ``before`` and ``after`` (n, 3): unwrapped positions of all atoms, sorted by ID,
-    before and after the run; ``thermo``: column -> samples.
+    ``seconds``: wall time of the ``run`` command; ``start``: force evaluations of the method's own start.
+    ``ids``, ``masses`` and ``molecules`` (n,), ``before`` and ``after`` (n, 3): unwrapped positions of all atoms,
+    sorted by ID, before and after the run; ``thermo``: column -> samples.
     """
 
     seconds: float
-    modify: float
     start: int
     ids: np.ndarray
     masses: np.ndarray
@@ -64,21 +62,9 @@ def _state(lmp):
     return ids[order], masses[order], atoms.extract_atom("molecule")[order], positions
 
 
-def _run(lmp, variables, composition):
-    """All steps; see ``perform``."""
-    if not composition:
-        return lmp.command(f"run {variables['steps']}")
-    lmp.command("run 0 post no")
-    parts = [f"timestep {part * float(variables['dt']):.17g}" for part in composition]
-    for part in parts * variables["steps"]:
-        lmp.command(part)
-        lmp.command("run 1 pre no post no")
-
-
-def perform(deck, variables, log, composition, tell):
+def perform(deck, variables, log, tell):
     """Outcome of a deck whose last line is ``run ${steps}`` after ``${last}``, as in in.motion; a request to a Worker.
 
-    ``composition``: parts of the step, of any sign, which are separate steps and make up each step.
     Raises LammpsError if the scene cannot be defined, RunError if its run fails.
     """
     os.chdir(deck.parent)
@@ -94,14 +80,13 @@ def perform(deck, variables, log, composition, tell):
         gc.disable()  # permanently: garbage is collected before the timing of every run
         begin = time.perf_counter()
         try:
-            _run(lmp, variables, composition)
+            lmp.command(f"run {variables['steps']}")
         except Exception as error:
             raise RunError(f"{log.name}: {error}") from error
         seconds = time.perf_counter() - begin
         *_, after = _state(lmp)
     left = Log(log)
-    modify = left.timers[-1].get("Modify", np.nan)
-    return Outcome(seconds, modify, left.start_evaluations, *atoms, before, after, left.thermo)
+    return Outcome(seconds, left.start_evaluations, *atoms, before, after, left.thermo)
 
 
 # --- the side of the caller -----------------------------------------------------------------------
@@ -120,13 +105,13 @@ class Session:
         self._worker.end()
         self._folder.cleanup()
 
-    def run(self, deck, variables, name, expected=0.0, composition=()):
+    def run(self, deck, variables, name, expected=0.0):
         """Outcome of a deck, see ``perform``; ``expected``: approximate duration in seconds.
 
         Raises LammpsError, or RunError for a run that failed or did not end in time.
         """
         log, patience = self.logs / f"log.{name}", PATIENCE * (1.0 + expected)
-        asked = {"deck": deck, "variables": variables, "log": log, "composition": composition}
+        asked = {"deck": deck, "variables": variables, "log": log}
         try:
             return self._worker.ask(perform, patience, **asked)[0]
         except LammpsError as error:

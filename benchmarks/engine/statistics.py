@@ -53,17 +53,6 @@ def with_error(value, error, sign=""):
     return f"{value:{sign}.{digits}f} ± {error:.{digits}f}"
 
 
-def deviation(mean, other):
-    """Difference of two Means in units of its standard error."""
-    return (mean.value - other.value) / np.hypot(mean.error, other.error)
-
-
-def largest_deviation(mean, other, count):
-    """The bound, in standard errors, below which the largest of ``count`` differences of two Means is not
-    significant."""
-    return allowed(count, mean.freedoms + other.freedoms)
-
-
 def allowed(count, freedoms):
     """The bound, in standard errors, below which the largest of ``count`` deviations is not significant.
 
@@ -91,8 +80,3 @@ def slope(time, values):
     for lag in range(1, lags + 1):
         total += 2 * (1 - lag / (lags + 1)) * (score[lag:] @ score[:-lag])
     return float(rate), float(math.sqrt(max(total, 0.0) * n / (n - 2)) / (x @ x))
-
-
-def order(steps, errors):
-    """Slope of log(error) over log(step), least squares: the order of a method."""
-    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])

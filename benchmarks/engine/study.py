@@ -70,16 +70,13 @@ class Finding:
     summary: str = ""
 
 
-@dataclass
+@dataclass(frozen=True)
 class Study:
     """A study: its measurement, its judgment, and the pages that show its results.
 
-    ``key``: its name on the command line.  ``title``: the heading of its page.  ``seconds``: duration on
-    two quiet cores.  ``measure(lab)`` returns plain data, ``find(data)`` a Finding.  ``page``: the page
-    doc/PAGE.md (default: the key), written from the template PAGE.md.j2; its pictures go to doc/PAGE.
-    ``parts``: parts that can be run alone, as KEY/PART.  ``blocks``: file of the checkout -> template of the
-    block that the study writes there.  ``search(values, seed, iterations)``, if there is one,
-    returns the text that --search prints, or raises ValueError.
+    ``key``: its name on the command line; its pictures go to doc/KEY.  ``title``: what it measures.  ``seconds``:
+    duration on two quiet cores.  ``measure(lab)`` returns plain data, ``find(data)`` a Finding.  ``blocks``: page of the
+    checkout -> template of the block that the study writes there.
     """
 
     key: str
@@ -87,10 +84,4 @@ class Study:
     seconds: float
     measure: Callable = field(repr=False)
     find: Callable = field(repr=False)
-    page: str = ""
-    parts: tuple = ()
     blocks: dict = field(default_factory=dict)
-    search: Callable = field(default=None, repr=False)
-
-    def __post_init__(self):
-        self.page = self.page or self.key

@@ -8,7 +8,7 @@ double.  Contents and use::
         reference_state, reference_states,
     )
     from benchmarks.reference.lammps_forces import LammpsForces, deck_problem, DeckError
-    from benchmarks.reference.solvers import state_errors, work_precision
+    from benchmarks.reference.solvers import solve, state_errors
     from benchmarks.reference import splittings
 
     problem = paper_problem(1, "consistent")         # the cage; or case 3, or "unrotated"
@@ -28,10 +28,9 @@ double.  Contents and use::
 
     # center (B,), angle (B,), energy (one number)
     errors = state_errors(problem, end, other_state)
-    points = work_precision(problem, 200.0, end, "DOP853", tolerances)  # or "LSODA"
-    points[0].evaluations, points[0].errors
+    other_state, evaluations = solve(problem, 200.0, "DOP853", 1e-8)  # or "LSODA"
     # the same of splittings with exact free rotation, by their numbers of steps
-    points = splittings.work_precision(problem, 200.0, end, splittings.SPLITTINGS[1], numbers)
+    ((other_state, evaluations),) = splittings.states(problem, 200.0, splittings.SPLITTINGS[1], 1000)
 
 State of a body: center of mass and velocity in space axes; q in the paper's order (vector part
 first, scalar last; A(q) of Eq. 8 turns space into body axes); omega_body along the principal axes,
@@ -42,9 +41,9 @@ problem was made: compare q within one problem, sites between two.  A reference 
 Files: quaternion.py; equations.py (bodies, state, rates, energies); fields.py (cage, none);
 lammps_forces.py (LAMMPS' own forces); paper.py (the paper's body and starts); integrators.py
 (Gragg-Bulirsch-Stoer); free_top.py (exact); store.py (cache); solvers.py (errors; solvers that
-control their steps); runge_kutta.py (a pair 8(7)); multistep.py (symmetric, order 8); splittings.py
-(Runge-Kutta-Nystroem and others with exact free rotation); stability.py (stable steps of Gear's
-methods for a linear equation).
+control their steps); multistep.py (symmetric, order 8); splittings.py (exact free rotation between kicks);
+stability.py (stable steps of the methods of the fix for a linear equation); central.py and deflection.py (collisions
+of two atoms).
 """
 
 from .equations import Problem, RigidBodies, State, bodies_from_sites

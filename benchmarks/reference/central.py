@@ -44,33 +44,6 @@ class LennardJones:
         return 24.0 * y * (1.0 - 2.0 * y) / r
 
 
-class Gromacs(LennardJones):
-    """Lennard-Jones whose force goes to zero between two distances, as in LAMMPS' pair style lj/gromacs.
-
-    Force plus A (r - inner)^2 + B (r - inner)^3 for each power: it and its derivative vanish at the outer distance.
-    """
-
-    def __init__(self, inner, outer):
-        self.inner, self.outer = inner, outer
-        width = outer - inner
-        self._terms = []
-        for sign, power in ((4.0, 12), (-4.0, 6)):
-            a = -sign * power * ((power + 4) * outer - (power + 1) * inner) / (outer ** (power + 2) * width**2)
-            b = sign * power * ((power + 3) * outer - (power + 1) * inner) / (outer ** (power + 2) * width**3)
-            self._terms.append((a, b))
-        self._shift = -super().energy(outer) + sum(a * width**3 / 3 + b * width**4 / 4 for a, b in self._terms)
-
-    def energy(self, r):
-        inside = np.clip(r - self.inner, 0.0, None)
-        cut = sum(a * inside**3 / 3 + b * inside**4 / 4 for a, b in self._terms)
-        return np.where(r < self.outer, super().energy(r) - cut + self._shift, 0.0)
-
-    def slope(self, r):
-        inside = np.clip(r - self.inner, 0.0, None)
-        cut = sum(a * inside**2 + b * inside**3 for a, b in self._terms)
-        return np.where(r < self.outer, super().slope(r) - cut, 0.0)
-
-
 class TwelveFour:
     """3^1.5 / 2 (r^-12 - r^-4), of an ion and an atom that it polarizes: the well is at 3^(1/8) and has the depth 1."""
 

@@ -5,7 +5,7 @@ Jacobian, so the calls for a Jacobian by differences are included.  It keeps roo
 bodies.
 
 DDEABM, the Adams method of variable step and order of L. F. Shampine and M. K. Gordon, is SWAG of the Python package
-extensisq.  The pair of orders 8(7) is in runge_kutta.py.  CVODE of SUNDIALS is there where the Python package
+extensisq.  CVODE of SUNDIALS is there where the Python package
 scikit-sundae is installed.  BDF is with Newton's method and a Jacobian of differences, Adams with functional iteration,
 which needs none.
 """
@@ -18,10 +18,9 @@ from scipy.integrate import solve_ivp
 
 from . import quaternion as qt
 from .equations import PARTS, State
-from .runge_kutta import TsitourasPapakostas
 
 METHODS = ("DOP853", "LSODA")
-DDEABM, PAIR = "DDEABM", "Tsitouras–Papakostas 8(7)"
+DDEABM = "DDEABM"
 #: methods of CVODE: name here -> name there
 CVODE = {"CVODE Adams": "Adams", "CVODE BDF": "BDF"}
 #: SciPy raises a smaller relative tolerance to this value, with a warning
@@ -46,15 +45,6 @@ class Errors:
     def rms_angle(self):
         """Root mean square of ``angle`` over the bodies."""
         return float(np.sqrt((self.angle**2).mean()))
-
-
-@dataclass(frozen=True)
-class WorkPoint:
-    """One run of a solver: requested ``tolerance``, number of ``evaluations``, and ``errors``."""
-
-    tolerance: float
-    evaluations: int
-    errors: Errors
 
 
 def state_errors(problem, reference, state):
@@ -103,8 +93,6 @@ def _of_scipy(rates, span, start, method, rtol, atol):
     """The same of SciPy's methods."""
     if method == DDEABM:
         from extensisq import SWAG as method
-    elif method == PAIR:
-        method = TsitourasPapakostas
     # no times in between are requested, because dense output would call the right-hand side additionally
     solution = solve_ivp(rates, span, start, method, rtol=rtol, atol=atol)
     return solution.success, solution.message, solution.y.T
@@ -117,7 +105,7 @@ def _solution(problem, time, method, tolerance, weights=None, most=np.inf):
     velocity), whichever is larger, or to the ``weights`` (13,) alone.  Raises RuntimeError if the method fails, or
     needs more than ``most`` evaluations.
     """
-    if method not in (known := (*METHODS, DDEABM, PAIR, *CVODE)):
+    if method not in (known := (*METHODS, DDEABM, *CVODE)):
         raise ValueError(f"the method is one of {', '.join(known)}, not {method}")
     if weights is None and not tolerance >= SMALLEST_TOLERANCE:
         raise ValueError(f"a tolerance of at least {SMALLEST_TOLERANCE:.2g} is required")
@@ -155,12 +143,3 @@ def largest_energy_error(problem, time, method, tolerance):
     double = problem.astype(np.float64)
     energies = [float(sum(double.energies(State.of(packed)))) for packed in steps]
     return evaluations, float(np.abs(np.array(energies) - energies[0]).max())
-
-
-def work_precision(problem, time, reference, method, tolerances):
-    """A WorkPoint for each of ``tolerances``."""
-    points = []
-    for tolerance in tolerances:
-        state, evaluations = solve(problem, time, method, tolerance)
-        points.append(WorkPoint(tolerance, evaluations, state_errors(problem, reference, state)))
-    return points

@@ -8,10 +8,8 @@ it is the same.  The kinetic energy is quadratic in the momenta, so methods of R
 Nystroem keep their order.  Each kick takes one evaluation of the forces; the last kick of a step
 shares its evaluation with the first kick of the next step.
 
-S. Blanes and P. C. Moan, J. Comput. Appl. Math. 142, 313 (2002): SRKN6b, SRKN11b and SRKN14a.
-W. Kahan and R.-C. Li, Math. Comput. 66, 1089 (1997): s17odr8a.  J. Laskar and P. Robutel, Celest. Mech. Dyn. Astron. 80,
-39 (2001): SABA4.  S. Blanes et al., Appl. Numer. Math. 68, 58 (2013): ABA(10,6,4).  The free rotation by Jacobi's elliptic functions
-follows R. van Zon and J. Schofield, Phys. Rev. E 75, 056701 (2007), with the formulas of free_top.py in double
+J. Laskar and P. Robutel, Celest. Mech. Dyn. Astron. 80, 39 (2001): SABA4.  S. Blanes et al., Appl. Numer. Math. 68, 58
+(2013): ABA(10,6,4).  The free rotation by Jacobi's elliptic functions follows R. van Zon and J. Schofield, Phys. Rev. E 75, 056701 (2007), with the formulas of free_top.py in double
 precision: ``FreeRotation``.
 """
 
@@ -22,7 +20,6 @@ from scipy.special import ellipj, elliprj, ellipkinc
 
 from . import quaternion as qt
 from .equations import State
-from .solvers import WorkPoint, state_errors
 
 
 # --- schemes --------------------------------------------------------------------------------------
@@ -61,61 +58,9 @@ class Splitting:
         return found
 
 
-def composed(label, order, steps):
-    """Splitting of the steps of velocity Verlet with these relative sizes (n,), one after the other."""
-    halves = np.array([0.0, *steps, 0.0]) / 2
-    return Splitting(label, order, tuple(steps), tuple(halves[1:] + halves[:-1]))
-
-
-#: relative sizes of the 17 steps of order 2 that are one of order 8
-KAHAN_LI = symmetric(
-    *(0.13020248308889008087881763, 0.56116298177510838456196441, -0.38947496264484728640807860),
-    *(0.15884190655515560089621075, -0.39590389413323757733623154, 0.18453964097831570709183254),
-    *(0.25837438768632204729397911, 0.29501172360931029887096624),
-    even=False,
-)
-SPLITTINGS = (
-    Splitting(
-        "RKN4, 6 stages",
-        4,
-        symmetric(0.245298957184271, 0.604872665711080, even=True),
-        symmetric(0.0829844064174052, 0.396309801498368, -0.0390563049223486, even=False),
-    ),
-    Splitting(
-        "RKN6, 11 stages",
-        6,
-        symmetric(
-            *(0.123229775946271, 0.290553797799558, -0.127049212625417),
-            *(-0.246331761062075, 0.357208872795928),
-            even=False,
-        ),
-        symmetric(
-            *(0.0414649985182624, 0.198128671918067, -0.0400061921041533),
-            *(0.0752539843015807, -0.0115113874206879),
-            even=True,
-        ),
-    ),
-    Splitting(
-        "RKN6, 14 stages",
-        6,
-        symmetric(
-            *(0.0378593198406116, 0.102635633102435, -0.0258678882665587, 0.314241403071447),
-            *(-0.130144459517415, 0.106417700369543, -0.00879424312851058),
-            even=False,
-        ),
-        symmetric(
-            *(0.09171915262446165, 0.183983170005006, -0.05653436583288827),
-            *(0.004914688774712854, 0.143761127168358, 0.328567693746804),
-            even=True,
-        ),
-    ),
-    composed("Kahan–Li 8, 17 stages", 8, KAHAN_LI),
-)
-
-
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 #: for weak forces: errors are small in powers of the forces and of the step, as SABA4 has eps h^8 and eps^2 h^2
-NEARLY_FREE = (
+SPLITTINGS = (
     Splitting("SABA4, 4 stages", 2, tuple(np.diff([-1, *_NODES, 1]) / 2), tuple(_WEIGHTS / 2)),
     Splitting(
         "ABA(10,6,4), 8 stages",
@@ -267,20 +212,3 @@ def states(problem, time, splitting, steps, every=None):
         if number % (every or steps) == 0:
             found.append((motion.state, motion.evaluations))
     return found
-
-
-def largest_energy_error(problem, time, splitting, steps):
-    """(evaluations, largest deviation of the energy), sampled about once per unit of time."""
-    start, every = float(sum(problem.energies(problem.start))), max(1, round(steps / float(time)))
-    found = states(problem, time, splitting, steps, every)
-    energies = [float(sum(problem.energies(state.astype(problem.dtype)))) for state, _ in found]
-    return found[-1][1], float(np.abs(np.array(energies) - start).max())
-
-
-def work_precision(problem, time, reference, splitting, numbers):
-    """A WorkPoint for each of the ``numbers`` of steps, which replace the tolerances."""
-    points = []
-    for steps in numbers:
-        ((state, evaluations),) = states(problem, time, splitting, steps)
-        points.append(WorkPoint(steps, evaluations, state_errors(problem, reference, state)))
-    return points

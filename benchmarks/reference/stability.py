@@ -13,11 +13,15 @@ Gear's coefficients, for N values (rows j = 0 ... N-1), from the polynomial P_n(
                           that times (N-2)/(N-1) ("position")
 """
 
+import ctypes
 import math
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 from scipy.linalg import pascal
+
+from benchmarks.engine import compiled
 
 OWN = 0.15
 #: values of omega h that are tried, and how close the limit is found between two of them
@@ -52,20 +56,23 @@ def second_order_coefficients(values, c0="position"):
     return [head * Fraction(values - 2, values - 1) if c0 == "position" else head, *tail]
 
 
-def second_step(c, omega_h, rate=0.0):
-    """Matrix (N, N) of one step of x'' = -omega^2 x + (rate/h) x' with coefficients ``c`` (N,).
-
-    Position and velocity are predicted.  Elements have the same type as in ``c`` (an array of floats, or of objects
-    such as mpmath's numbers).
-    """
-    predict = pascal(len(c), "upper").astype(c.dtype)
-    target = (rate * predict[1] - omega_h**2 * predict[0]) / 2
-    return predict + np.outer(c, target - predict[2])
+def second_step(c, omega_h):
+    """Matrix (N, N) of one step of x'' = -omega^2 x with coefficients ``c`` (N,)."""
+    predict = pascal(len(c), "upper").astype(float)
+    return predict - np.outer(c, omega_h**2 / 2 * predict[0] + predict[2])
 
 
 def second_order_step(values, omega_h, c0="position"):
     """``second_step`` with Gear's coefficients."""
     return second_step(np.array(second_order_coefficients(values, c0), dtype=float), omega_h)
+
+
+def momentum_step(values, omega_h):
+    """``second_step`` with the coefficients of the kernel for formulation momentum."""
+    c = np.empty(values)
+    kernel = compiled.load(Path(__file__).with_name("kernel.cpp"))
+    kernel.tuned(values, ctypes.c_void_p(c.ctypes.data))
+    return second_step(c, omega_h)
 
 
 def first_order_step(n, omega_h, momentum="corrected"):

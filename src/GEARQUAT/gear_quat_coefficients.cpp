@@ -18,7 +18,7 @@ Tuned coefficients, for formulation momentum: Gear's coefficients put every spur
    Five values are for long steps, at which the energy drift is important.  With c = (0, 17/24, 1,
    7/12, 7/24) the method is symmetric in time and has no drift, but noise does not decay.  The set
    of the table has spurious roots of modulus 0.98 and the angle and c_0 of the least drift in
-   liquids (doc/coefficients.md).
+   liquids (doc/theory.md).
 
    Order conditions.  Let the right-hand side of a second-order equation be a given function of time
    and the solution a polynomial of degree N, y_N = h^N/N! y^(N) = 1 for all times.  The rows then

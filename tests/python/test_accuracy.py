@@ -1,4 +1,4 @@
-"""The study accuracy: orders, prices and errors of made-up numbers; real runs of one scene."""
+"""Costs of errors, errors of poses, and a run of the study of accuracy."""
 
 import math
 
@@ -6,26 +6,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from benchmarks.engine import LammpsError, session
-from benchmarks.engine.methods import DEFAULTS, gear
+from benchmarks.engine import LammpsError
+from benchmarks.engine.costs import Cost, cost_of
+from benchmarks.engine.methods import AUTOMATIC
+from benchmarks.engine.session import Session
 from benchmarks.engine.sites import pose_errors
-from benchmarks.studies.accuracy import evaluate, plan, runs
-from benchmarks.studies.accuracy.evaluate import Cost, cost_of, fitted_order
-from benchmarks.studies.cases.accuracy import reference
-
-STEPS = 0.5 / 2.0 ** np.arange(0, 8, 0.5)
-
-
-# --- fitted orders --------------------------------------------------------------------------------
-def test_rounding_and_coarse_steps_do_not_count():
-    noise = 1e-9 * np.resize([2.0, 1.0, 3.0], len(STEPS))
-    errors = np.maximum(STEPS**5, noise)
-    errors[:3] = (1e-4, np.inf, 1.0)
-    fit = fitted_order(STEPS, errors, limit=STEPS[2])
-    assert fit.order == pytest.approx(5.0, rel=1e-9)
-    assert errors[fit.used].min() > evaluate.ABOVE_FLOOR * noise.max()
-    assert STEPS[fit.used].max() < STEPS[2] / 1.25
-    assert np.polyfit(np.log(STEPS[3:]), np.log(errors[3:]), 1)[0] < 4.9  # the rule matters
+from benchmarks.studies import accuracy
 
 
 # --- prices ---------------------------------------------------------------------------------------
@@ -77,39 +63,17 @@ def test_pose_errors_are_rms_over_bodies():
 
 
 # --- real LAMMPS ----------------------------------------------------------------------------------
-SCENE = plan.scenes(True)["case1"]
-
-
-@pytest.fixture
-def lammps(tmp_path):
-    with session.Session(tmp_path / "logs") as running:
-        yield running
-
-
-def test_errors_of_a_run_and_its_repetition(lammps, tmp_path):
-    run = plan.Run(SCENE, gear("second", 6), 10240)
-    outcome, errors = runs.judged(lammps, run, runs.reference_of(SCENE, tmp_path, lammps))
-    body, masses = outcome.molecules == 1, outcome.masses
-    center = masses[body] @ outcome.after[body] / masses[body].sum()
-    known = np.linalg.norm(center - reference())
-    assert errors.position == pytest.approx(known, abs=2e-13) and known < 1e-10
-    assert errors.orientation < 1e-10 and errors.energy < 1e-8
-    assert errors.norm < 1e-14 and errors.tangency < 1e-14
-    assert outcome.start > 0 and len(outcome.thermo["Time"]) == SCENE.samples + 1
-    assert 0 < runs.timed(lammps, run, outcome) < 10
-    outcome.after[0, 0] *= 1 + 1e-15
-    with pytest.raises(LammpsError, match="does not repeat"):
-        runs.timed(lammps, run, outcome)
-    timed = run.perform(lammps, timers=True)
-    assert 0 < timed.modify < timed.seconds
-
-
-def test_defaults_are_those_of_the_fix(lammps):
-    """Stating the keywords that plan.py assumes as defaults does not change the last bit."""
-    for formulation, method in DEFAULTS.items():
-        given = {} if formulation == "momentum" else {"formulation": formulation}
-        bare = plan.Run(SCENE, method, 320).variables(False)
-        bare = {k: v for k, v in bare.items() if k not in method.variables} | given
-        told = plan.Run(SCENE, method, 320).perform(lammps)
-        untold = lammps.run(SCENE.deck, bare, "bare")
-        assert np.array_equal(told.after, untold.after), f"{method.label}: not the defaults"
+def test_errors_of_a_run_and_its_repetition(tmp_path):
+    scene = accuracy.SCENES[0]
+    reference = accuracy.Reference.of(accuracy.problem_of(scene), scene.end, tmp_path)
+    with Session(tmp_path / "logs") as session:
+        outcome, point = accuracy._errors(session, scene, reference, AUTOMATIC, 5120)
+        body, masses = outcome.molecules == 1, outcome.masses
+        center = masses[body] @ outcome.after[body] / masses[body].sum()
+        known = np.linalg.norm(center - reference.state.double.center)
+        assert point.error == pytest.approx(known, abs=2e-13) and known < 1e-10
+        assert outcome.start > 0 and point.evaluations == 1 + outcome.start + 5120
+        assert 0 < accuracy._timed(session, scene, AUTOMATIC, 5120, outcome) < 10
+        outcome.after[0, 0] *= 1 + 1e-15
+        with pytest.raises(LammpsError, match="does not repeat"):
+            accuracy._timed(session, scene, AUTOMATIC, 5120, outcome)

@@ -8,10 +8,10 @@ import pytest
 from click.testing import CliRunner
 
 from benchmarks import __main__ as command
-from benchmarks.engine import Bars, Curve, Finding, Job, Lab, LammpsError, Measurement, Panel
+from benchmarks.engine import Curve, Finding, Job, Lab, LammpsError, Measurement, Panel
 from benchmarks.engine import Study, Table, conduct, publish, runner
+from benchmarks.engine.costs import Cost
 from benchmarks.engine.store import read_data, write_data
-from benchmarks.studies.accuracy.evaluate import Cost
 from lammps_gearquat.logs import Log
 
 PROGRAM = """#!/bin/sh
@@ -144,30 +144,29 @@ def made_up(value=1e-13, **of_study):
     def find(data):
         panels = (
             Panel("left", "time", "error", (Curve("a line", x, data["x"], "first"),)),
-            Panel("right", "", "ns", Bars(("low", "high"), x, x)),
+            Panel("right", "", "ns", (Curve("", x, x, "second", error=x),)),
         )
         table = Table(("a", "b|c"), [(1, "x|y")])
         measurements = [Measurement("an error", value, 1e-14, most=1e-12)]
         return Finding(measurements, {"both": table}, {"both": panels}, {"length": 1234567})
 
-    settings = {"parts": ("one",), "blocks": {"README.md": "block.md.j2"}} | of_study
-    return Study("made", "Made up", 1.0, lambda lab: {"x": x}, find, "made_page", **settings)
+    settings = {"blocks": {"README.md": "block.md.j2"}} | of_study
+    return Study("made", "Made up", 1.0, lambda lab: {"x": x}, find, **settings)
 
 
 @pytest.fixture
 def templates(tmp_path, monkeypatch):
     folder = tmp_path / "templates"
     folder.mkdir()
-    (folder / "made_page.md.j2").write_text(
-        "# {{ study.title }}\n{{ provenance }}\n{{ table('both') }}\n{{ measured(measurements) }}\n"
+    (folder / "block.md.j2").write_text(
+        "{{ provenance }}\n{{ table('both') }}\n{{ measured(measurements) }}\n"
         "{{ picture('both', 'Both.') }}\n{{ length | grouped }}\n"
     )
-    (folder / "block.md.j2").write_text("{{ picture('both', 'Both.', 'doc/made_page') }}\n")
     monkeypatch.setattr("benchmarks.engine.page.TEMPLATES", folder)
     return folder
 
 
-def test_publishing_writes_page_pictures_and_blocks(templates, tmp_path, monkeypatch):
+def test_publishing_writes_blocks_and_pictures(templates, tmp_path, monkeypatch):
     root, out = tmp_path / "root", tmp_path / "out"
     root.mkdir()
     readme, study = root / "README.md", made_up()
@@ -178,11 +177,12 @@ def test_publishing_writes_page_pictures_and_blocks(templates, tmp_path, monkeyp
         with pytest.raises(publish.PublishError, match="README.md needs one"):
             publish.check_places(study, root)
     readme.write_text(f"before\n{mark}\nold\n{publish.END}\nafter\n")
-    (out / "made_page" / "other.png").touch()
+    (out / "made" / "other.png").touch()
     publish.publish(study, finding, "Somewhere.", out, root)
-    assert (root / "doc" / "made_page.md").read_text() == (out / "made_page.md").read_text()
-    assert [path.name for path in (root / "doc" / "made_page").iterdir()] == ["both.png"]
-    block = "![Both.](doc/made_page/both.png)\n\n*Both.*"
+    assert [path.name for path in (root / "doc" / "made").iterdir()] == ["both.png"]
+    block = "Somewhere.\n| a | b\\|c |\n|---|---|\n| 1 | x\\|y |\n"
+    block += "| measurement | value |\n|---|---|\n| an error | 1.0e-13 ± 1.0e-14 |\n"
+    block += "![Both.](made/both.png)\n\n*Both.*\n1 234 567"
     assert readme.read_text() == f"before\n{mark}\n{block}\n{publish.END}\nafter\n"
 
 

@@ -14,7 +14,7 @@ def slow_walks(rng):
     for seed in plan.seeds:
         walk = np.cumsum(1e-3 * rng.normal(size=len(time)))
         water[pressure.OURS, 2.0, seed] = {"Time": time, "v_conserved": RATE / unit * time + walk}
-    return pressure.Results(plan, water, {}, {})
+    return pressure.Results(plan, water, {})
 
 
 def test_errors_of_drifts_are_their_scatter():

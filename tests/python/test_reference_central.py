@@ -91,21 +91,3 @@ def test_tables_of_the_literature(omega):
         for temperature in (0.3, 0.5, 1.0, 2.0, 5.0, 10.0, 100.0):
             fit = kim_monroe(order, power, temperature)
             assert omega(order, power, temperature) == pytest.approx(fit, rel=2.5e-4)
-
-
-@pytest.mark.parametrize("nodes", ["NODES_X", "NODES_R", "NODES_E"])
-def test_the_quadrature_has_converged(omega, monkeypatch, nodes):
-    monkeypatch.setattr(central, nodes, getattr(central, nodes) * 2 // 3)
-    coarse = central.CollisionIntegrals()
-    for temperature in (0.5, 1.0, 10.0):
-        for order, power in ((1, 1), (1, 2), (2, 2)):
-            assert coarse(order, power, temperature) == pytest.approx(omega(order, power, temperature), rel=1e-5)
-
-
-def test_the_cut_potential_is_that_of_its_force():
-    potential = central.Gromacs(3.0, 8.0)
-    for r in (1.05, 2.9, 3.1, 6.0, 7.9, 8.5):
-        h = 1e-4
-        numeric = (potential.energy(r + h) - potential.energy(r - h)) / (2 * h)
-        assert float(potential.slope(r)) == pytest.approx(float(numeric), rel=1e-5, abs=1e-9)
-    assert abs(potential.energy(8.0 - 1e-6)) < 1e-15 and abs(potential.slope(8.0 - 1e-6)) < 1e-13

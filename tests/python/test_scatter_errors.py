@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from benchmarks.studies.scatter.atoms import Atoms
-from benchmarks.studies.scatter.errors import ARGON, BOLTZMANN, IONS, until
+from atoms import ARGON, BOLTZMANN, IONS, Atoms, until
 from lammps_gearquat.scatter import Plan, pilots
 from lammps_gearquat.scatter.density import Density
 from lammps_gearquat.scatter.integrals import weights

@@ -124,4 +124,4 @@ def find(results):
 
 
 TITLE = "The paper's claims and what was measured"
-STUDY = Study("cases", TITLE, 180.0, measure, find, page="results")
+STUDY = Study("cases", TITLE, 180.0, measure, find, blocks={"doc/results.md": "results.md.j2"})

@@ -149,4 +149,4 @@ def find(results):
     return Finding(rows, tables(results, counts), {"collisions": picture}, context)
 
 
-STUDY = Study("collisions", "Collisions under a tolerance", 300.0, measure, find)
+STUDY = Study("collisions", "Collisions under a tolerance", 300.0, measure, find, blocks={"doc/collisions.md": "collisions.md.j2"})

@@ -1,301 +1,278 @@
-"""Real liquids: energy, temperatures and pressure against the step, and the limits from the forces.
+"""Real liquids: drift of the energy against the step, and the temperatures of translation and rotation in water.
 
-plan.py (scenes and sizes), runs.py (LAMMPS' runs), heavier.py (bodies with larger inertia), quantities.py (results
-from runs), judging.py (measurements and bounds), and here the tables and panels.  The drift from a spectrum is computed
-by coefficients/prediction.py.
+Another liquid needs an entry in LIQUIDS, and its files ``liquid.KEY`` and ``molecule.KEY``.
 """
 
+import itertools
 import math
-from functools import partial
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+from scipy.constants import Avogadro
 
-from benchmarks.engine.methods import looks
-from benchmarks.engine.panels import Curve, Panel, draw
-from benchmarks.engine.statistics import with_error
-from benchmarks.engine.study import Finding, Study, Table
-from benchmarks.studies.coefficients import prediction
+from benchmarks.engine import EXAMPLES, Finding, Job, Measurement, Study, Table
+from benchmarks.engine.methods import AUTOMATIC, rigid
+from benchmarks.engine.statistics import mean_of_series, slope, with_error
 
-from . import judging
-from . import quantities as of
-from .judging import UNIT, lost, predicted
-from .plan import DEFAULT, FAMILIES, FLOOR_STEP, FLOORS, FORESEEN, HEAVY, LIQUIDS, MAIN, METHODS, NAMES
-from .plan import NVE_SMALL, SCENES, SINGLE, STEPS, VALUES, WATERS
-from .runs import measure
-
-#: the axis of drifts is linear below this size
-LINEAR = 0.01
-#: drifts above this size are drawn as crosses
-LARGEST = 100.0
-#: darker colors of a kind come last
-LOOKS = looks(METHODS[::-1])
+RIGID = rigid("rigid/nve/small", "rigid")
+NAMES = {AUTOMATIC: "`fix gear/quat`", RIGID: f"`{RIGID.label}`"}
+#: steps in fs, and the time between samples, a multiple of all steps
+STEPS, INTERVAL = (2.0, 2.5, 3.0, 4.0, 5.0), 60.0
+BOLTZMANN, FEMTOSECONDS = 0.0019872067, 1e6  # kcal/mol/K; in a nanosecond
+UNIT = "kT/ns/dof"
+#: blocks of each run for the errors of means
+BLOCKS = 10
+#: step in fs -> largest size of the drift of water, plus WITHIN standard errors; steps at which temperatures must agree
+MOST_DRIFT, WITHIN, TEMPERED = {2.5: 0.02, 3.0: 0.03, 4.0: 0.25}, 2.0, (2.0, 2.5, 3.0)
+#: LAMMPS' messages if numbers are not finite or atoms move too far
+LOST = ("Non-numeric", "Fix gear/quat: blow-up", "Out of range atoms", "Lost atoms", "Rigid body atoms", "Bond atoms missing")
 
 
-def lost_text(runs):
-    """Number of lost Runs, and the time of the first loss."""
-    ends = [run.time[-1] / 1000 if len(run.time) else 0.0 for run in lost(runs)]
-    return f"{len(ends)} of {len(runs)} lost, after {min(ends):.1f} ps"
+@dataclass(frozen=True)
+class Liquid:
+    """A liquid of ``edge``^3 rigid molecules at a ``density`` in g/cm^3 and a ``temperature`` in K.
 
-
-def show_drift(runs, liquid):
-    """Drift as text."""
-    return lost_text(runs) if lost(runs) else with_error(*of.drift(runs, liquid), sign="+")
-
-
-def show_state(runs, liquid):
-    """Fluctuation, temperatures, their difference and pressure as text."""
-    if lost(runs):
-        return [lost_text(runs), *[""] * 4]
-    means = [of.mean(runs, lambda run, k=k: of.temperatures(run, liquid)[k]) for k in (0, 1)]
-    means += [of.warmer(runs, liquid), of.mean(runs, lambda run: run.pressure)]
-    fluctuation = np.mean([of.fluctuation(run) for run in runs])
-    return [f"{fluctuation:.2g}", *(with_error(m.value, m.error) for m in means)]
-
-
-# --- tables ---------------------------------------------------------------------------------------
-def scene_tables(results, scene):
-    """Table of drifts with a column per step; for water, table of other quantities with a row per method and step."""
-
-    def cell(method, dt):
-        runs = results.runs.get((scene.key, method.key, dt))
-        return show_drift(runs, scene.liquid) if runs else ""
-
-    drifts = [[NAMES[method], *(cell(method, dt) for dt in STEPS)] for method in scene.methods]
-    states = [
-        [NAMES[method], f"{dt:g}", *show_state(results.runs[scene.key, method.key, dt], scene.liquid)]
-        for method in (DEFAULT, NVE_SMALL)
-        for dt in scene.methods[method].steps
-    ]
-    columns = ["fluctuation, kcal/mol", "T translation, K", "T rotation, K", "translation − rotation, K"]
-    tables = {f"drift_{scene.key}": Table((f"drift, {UNIT}", *(f"{dt:g} fs" for dt in STEPS)), drifts)}
-    if scene.liquid in WATERS:
-        tables[f"state_{scene.key}"] = Table(("method", "step, fs", *columns, "pressure, atm"), states)
-    return tables
-
-
-def prediction_table(results):
-    """Predicted and measured drift of each liquid, number of values and step."""
-    rows = []
-    for scene in SCENES:
-        for values, method in VALUES.items():
-            cells = []
-            for dt in FORESEEN:
-                runs = results.runs[scene.key, method.key, dt]
-                cells.append(f"{predicted(results, scene, values, dt):+.3f}; {show_drift(runs, scene.liquid)}")
-            rows.append([scene.liquid.title, values, *cells])
-    return Table(("liquid", "values", *(f"{dt:g} fs" for dt in FORESEEN)), rows)
-
-
-def spectra_table(results):
-    """Spectra of the liquids; coefficients/spectra.csv is a copy of this table."""
-    spectra = {scene.liquid.title: results.spectra[scene.liquid.key] for scene in SCENES}
-    return Table(*prediction.table(spectra))
-
-
-def chosen_table(results):
-    """Number of values that the fix chooses, for each liquid and step."""
-    rows = []
-    for scene in SCENES:
-        chosen = [{run.values for run in results.runs[scene.key, DEFAULT.key, dt]} for dt in STEPS]
-        rows.append([scene.liquid.title, *(", ".join(map(str, sorted(found))) for found in chosen)])
-    return Table(("liquid", *(f"{dt:g} fs" for dt in STEPS)), rows)
-
-
-def first_peaks(pairs):
-    """Heights of the first maxima (starts, 2) of radial distribution functions (starts, bins, 3)."""
-    return np.max(np.asarray(pairs)[:, :, 1:], axis=1)
-
-
-def averages(runs, pairs):
-    """Averages (3, starts): potential energy per molecule, and the two first_peaks of ``pairs``."""
-    energies = [run.potential.mean() / MAIN.liquid.molecules for run in runs]
-    return np.vstack([energies, first_peaks(pairs).T])
-
-
-def heavy_table(results):
-    """Static averages of the model, and their differences, start by start, with larger inertia."""
-    columns = ["inertia", "step, fs", f"drift, {UNIT}", "T translation − T rotation, K"]
-    columns += ["potential energy, kcal/mol per molecule", "first maximum of g(r), O–O", "O–H"]
-    rows, model = [], None
-    for scene in (MAIN, HEAVY):
-        for dt in scene.pairs:
-            runs = results.runs[scene.key, DEFAULT.key, dt]
-            cells = [f"{scene.inertia:g}", f"{dt:g}", show_drift(runs, scene.liquid)]
-            if not lost(runs) and (scene is MAIN or model is not None):
-                warmer = of.warmer(runs, scene.liquid)
-                found = averages(runs, results.pairs[scene.key, dt])
-                shown, sign = (found, "") if scene is MAIN else (found - model, "+")
-                model = found if scene is MAIN else model
-                cells += [with_error(warmer.value, warmer.error)]
-                cells += [with_error(*of.of_starts(row), sign) for row in shown]
-            rows.append(cells + [""] * (len(columns) - len(cells)))
-    return Table(columns, rows)
-
-
-def show_fluctuation(run):
-    """Fluctuation as text, "" without a run."""
-    if run is None:
-        return ""
-    return lost_text([run]) if run.lost else f"{of.fluctuation(run):.2g}"
-
-
-def floor_table(results):
-    """Fluctuation, drift and time per step for each way to compute the forces."""
-    rows = []
-    for forces in FLOORS:
-        own, other = (results.floors.get((forces.text, m.key)) for m in (DEFAULT, NVE_SMALL))
-        lines = "<br>".join(f"`{line}`" for line in forces.lines)
-        cells = show_fluctuation(own), show_fluctuation(other), show_drift([own], MAIN.liquid)
-        rows.append([lines, *cells, f"{1000 * own.seconds:.1f}"])
-    names = [f"fluctuation, {NAMES[method]}" for method in (DEFAULT, NVE_SMALL)]
-    return Table(("lines", *names, f"drift, {NAMES[DEFAULT]}", "ms per step"), rows)
-
-
-def floors(results):
-    """Fluctuations with the default, for the sentences of the page, kcal/mol."""
-    words = {"plain": "plain cut-off", "shifted": "energy shifted", "switched": "energy switched"}
-    named = {
-        word + suffix: next(f for f in FAMILIES[family] if f.accuracy == accuracy)
-        for word, family in words.items()
-        for suffix, accuracy in (("_coarse", 1e-4), ("", 1e-5), ("_fine", 1e-6))
-    }
-    named |= {"switched_finest": FAMILIES["energy switched"][-1]}
-    named |= dict(zip(("functions", "longer", "order", "ewald", "rare"), SINGLE))
-    runs = {word: results.floors[forces.text, DEFAULT.key] for word, forces in named.items()}
-    return {word: math.inf if run.lost else of.fluctuation(run) for word, run in runs.items()}
-
-
-def advice(results):
-    """The cheaper of two settings with equally accurate forces."""
-    ways = FAMILIES["energy shifted"][-2], SINGLE[2]
-    return min(ways, key=lambda forces: results.floors[forces.text, DEFAULT.key].seconds)
-
-
-# --- pictures -------------------------------------------------------------------------------------
-def plain_name(method):
-    """Name of a method in pictures."""
-    return NAMES[method].replace("`", "")
-
-
-def panel(results, scene, title, ylabel, read, methods=METHODS, apart=0.0, most=math.inf, **more):
-    """Panel of a quantity against the step; ``read(runs)``: value and error.
-
-    ``apart``: distance of error bars at the same step, as a fraction of the largest step.  Lost runs, and runs with a
-    value above ``most``, are crosses.
+    ``mass`` of a molecule in g/mol; ``types``: number of atom types; ``axes``: number of axes of rotation; ``pair``,
+    ``kspace``: LAMMPS' styles; ``accuracy`` of kspace.
     """
-    curves, crosses = [], []
-    for k, method in enumerate(methods):
-        runs = {dt: results.runs[scene.key, method.key, dt] for dt in scene.methods[method].steps}
-        points = [(dt, *read(own)) for dt, own in runs.items() if not lost(own)]
-        points = [point for point in points if abs(point[1]) <= most]
-        x, y, error = np.array(points).reshape(-1, 3).T
-        crosses += [(dt, LOOKS[method]["color"]) for dt in runs if dt not in x]
-        x = x + apart * STEPS[-1] * (k - (len(methods) - 1) / 2)
-        curves.append(Curve(plain_name(method), x, y, **LOOKS[method], error=error))
-    more = {"log": "", "legend": False} | more
-    return Panel(title, "step, fs", ylabel, curves, xticks=STEPS, lost=tuple(crosses), **more)
+
+    key: str
+    title: str
+    edge: int
+    density: float
+    temperature: float
+    mass: float
+    types: int = 2
+    axes: int = 3
+    pair: str = "lj/cut/coul/long 9"
+    kspace: str = "pppm"
+    accuracy: str = "1e-5"
+
+    @property
+    def molecules(self):
+        """Their number."""
+        return self.edge**3
+
+    @property
+    def length(self):
+        """Edge of the box in Angstrom."""
+        return (self.molecules * self.mass / (self.density * 1e-24 * Avogadro)) ** (1 / 3)
+
+    @property
+    def freedoms(self):
+        """Degrees of freedom of translation (without the total momentum) and of rotation."""
+        return 3 * self.molecules - 3, self.axes * self.molecules
 
 
-def drift_panels(results):
-    """Drift against the step in every scene."""
-    words = f"drift, {UNIT}"
-    return tuple(
-        panel(
-            results,
-            scene,
-            scene.title,
-            words,
-            partial(of.drift, liquid=scene.liquid),
-            most=LARGEST,
-            linear=LINEAR,
+SPCE = Liquid("spce", "SPC/E water", 6, 0.997, 298.15, 18.0154)
+WATER4 = Liquid(
+    "tip4p",
+    "TIP4P/2005 water",
+    5,
+    0.997,
+    298.15,
+    18.0154,
+    pair="lj/cut/tip4p/long 1 2 1 1 0.1546 9",
+    kspace="pppm/tip4p",
+)
+WATERS = (SPCE, WATER4)
+LIQUIDS = (
+    *WATERS,
+    Liquid("co2", "TraPPE carbon dioxide", 5, 1.046, 250.0, 44.0098, axes=2),
+    # small charges: with pppm 1e-5 their real-space part is so large at the cut-off that energies jump there
+    Liquid("benzene", "OPLS-AA benzene", 4, 0.876, 298.15, 78.114, accuracy="1e-6"),
+    Liquid("nitrogen", "TraPPE nitrogen", 5, 0.807, 77.0, 28.0134, axes=2),
+    Liquid("methanol", "TraPPE-UA methanol", 5, 0.787, 298.15, 32.0419, types=3),
+)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Numbers of starts and durations in ps of water and of the other liquids; steps of the ``equilibration`` and, before
+    it, steps of ``shrinking`` until a liquid has its density."""
+
+    starts: int = 5
+    duration: float = 20.0
+    few: int = 3
+    short: float = 5.0
+    equilibration: int = 5000
+    shrinking: int = 4000
+
+    def extent(self, liquid):
+        """Number of starts, and duration in fs."""
+        starts, ps = (self.starts, self.duration) if liquid in WATERS else (self.few, self.short)
+        return starts, 1000 * ps
+
+
+QUICK = Plan(1, 1.26, 1, 1.26, 500, 1000)
+
+
+@dataclass(frozen=True)
+class Run:
+    """Samples (n,) at ``time`` in fs of energies in kcal/mol: all, of translation and of rotation; ``duration``:
+    requested, fs."""
+
+    time: np.ndarray
+    total: np.ndarray
+    translation: np.ndarray
+    rotation: np.ndarray
+    duration: float
+
+    @property
+    def lost(self):
+        """True if the run ended early or has numbers that are not finite."""
+        return not len(self.time) or self.time[-1] < 0.999 * self.duration
+
+
+@dataclass(frozen=True)
+class Results:
+    """``runs``: (key of liquid, key of method, step) -> list of Run, one for each start."""
+
+    plan: Plan
+    runs: dict
+
+
+# --- runs -----------------------------------------------------------------------------------------
+def _deck(name):
+    return Path(__file__).with_name(f"in.{name}")
+
+
+def template(liquid):
+    """Molecule file of the liquid; the one for SPC/E is in examples/water."""
+    name = f"molecule.{liquid.key}"
+    own = Path(__file__).with_name(name)
+    return own if own.is_file() else EXAMPLES / "water" / name
+
+
+def equilibrate(lab, plan, liquids_and_numbers):
+    """(key of liquid, number of start) -> path of its data file, from pairs of a Liquid and numbers of starts."""
+    jobs, data = {}, {}
+    names = "types", "edge", "density", "mass", "temperature", "pair", "kspace"
+    for liquid, numbers in liquids_and_numbers:
+        own = {"liquid": liquid.key} | {name: getattr(liquid, name) for name in names}
+        own |= {"template": template(liquid), "steps": plan.equilibration, "shrinking": plan.shrinking}
+        for start in numbers:
+            name = f"equilibrate_{liquid.key}_{start}"
+            jobs[name] = Job(_deck("equilibrate"), own | {"seed": 4711 + start}, plan.equilibration, plugin=False)
+            data[liquid.key, start] = lab.dump(name).with_suffix(".data").resolve()
+    lab.many(jobs, keep=True)
+    return data
+
+
+def job(liquid, data, method, dt, duration, interval=INTERVAL):
+    """Job of in.liquid; ``data``: path, ``dt``, ``duration`` and ``interval`` in fs."""
+    every = round(interval / dt)
+    steps = every * math.ceil(duration / (every * dt) - 1e-9)
+    variables = {"liquid": liquid.key, "data": data, "pair": liquid.pair, "kspace": f"{liquid.kspace} {liquid.accuracy}"}
+    variables |= {"dt": f"{dt:.17g}", "every": every, "steps": steps, **method.variables}
+    return Job(_deck("liquid"), variables, steps, plugin=method.gear)
+
+
+def read(finished, duration):
+    """Run of a log; it may have been refused before its first sample."""
+    if not finished.log.tables or not len(finished.thermo["Step"]):
+        return Run(*np.zeros((4, 0)), duration)
+    columns = np.array([finished.thermo[name] for name in ("Time", "v_total", "v_ketrans", "v_kerot")])
+    return Run(*columns[:, np.isfinite(columns).all(axis=0)], duration)
+
+
+def measure(lab):
+    """Results; finished runs of an earlier call with the same input are not repeated."""
+    plan, jobs = QUICK if lab.quick else Plan(), {}
+    with lab.share(0.1):
+        data = equilibrate(lab, plan, [(liquid, range(plan.extent(liquid)[0])) for liquid in LIQUIDS])
+    for liquid, method, dt in itertools.product(LIQUIDS, NAMES, STEPS):
+        starts, duration = plan.extent(liquid)
+        for start in range(starts):
+            made = job(liquid, data[liquid.key, start], method, dt, duration)
+            jobs[f"{liquid.key}_{method.key}_dt{dt:g}_{start}"] = made, (liquid.key, method.key, dt)
+    with lab.share(0.9):
+        made = {name: made for name, (made, _) in jobs.items()}
+        finished = lab.many(made, may_fail=lambda text: any(words in text for words in LOST), keep=True)
+    results = Results(plan, {})
+    for name, (made, key) in jobs.items():
+        results.runs.setdefault(key, []).append(read(finished[name], made.steps * key[-1]))
+    return results
+
+
+# --- quantities -----------------------------------------------------------------------------------
+def drift(runs, liquid):
+    """Mean slope of the total energy of some Runs and its standard error, kT per ns and degree of freedom.
+
+    The error is from the scatter of the slopes; of a single run, from the scatter of its samples about the line.  kT is
+    for the nominal temperature of the liquid.
+    """
+    unit = BOLTZMANN * liquid.temperature * sum(liquid.freedoms) / FEMTOSECONDS
+    rates, errors = np.transpose([slope(run.time, run.total) for run in runs]) / unit
+    if len(runs) == 1:
+        return float(rates[0]), float(errors[0])
+    return float(rates.mean()), float(rates.std(ddof=1) / np.sqrt(len(rates)))
+
+
+def warmer(runs, liquid):
+    """Temperature of translation minus temperature of rotation, kelvin: value and standard error."""
+
+    def difference(run):
+        translation, rotation = (
+            2 * energy / (n * BOLTZMANN) for energy, n in zip((run.translation, run.rotation), liquid.freedoms)
         )
-        for scene in SCENES
-    )
+        return translation - rotation
+
+    mean = mean_of_series([difference(run) for run in runs], BLOCKS)
+    return mean.value, mean.error
 
 
-def state_panels(results):
-    """Fluctuation, difference of the temperatures and pressure against the step in MAIN."""
-
-    def value_and_error(mean):
-        return mean.value, mean.error
-
-    def fluctuation(runs):
-        return float(np.mean([of.fluctuation(run) for run in runs])), 0.0
-
-    def warmer(runs):
-        return value_and_error(of.warmer(runs, MAIN.liquid))
-
-    def pressure(runs):
-        return value_and_error(of.mean(runs, lambda run: run.pressure))
-
-    shown = partial(panel, results, MAIN, MAIN.title, methods=(DEFAULT, NVE_SMALL))
-    return (
-        shown("fluctuation of the energy, kcal/mol", fluctuation, log="y"),
-        shown("T translation − T rotation, K", warmer, apart=0.01),
-        shown("pressure, atm", pressure, apart=0.01),
-    )
+# --- what is found --------------------------------------------------------------------------------
+def _ends(runs):
+    """Times in ps at which lost runs ended."""
+    return [run.time[-1] / 1000 if len(run.time) else 0.0 for run in runs if run.lost]
 
 
-def floor_panels(results):
-    """Fluctuation against the accuracy of kspace, for each treatment of the cut-off."""
-    curves = []
-    for mark, (name, family) in zip("so^", FAMILIES.items()):
-        for method in FLOORS[family[0]]:
-            runs = {forces.accuracy: results.floors[forces.text, method.key] for forces in family}
-            kept = [(x, of.fluctuation(run)) for x, run in runs.items() if not run.lost]
-            look, points = LOOKS[method] | {"marker": mark}, np.array(kept).reshape(-1, 2).T
-            curves.append(Curve(f"{plain_name(method)}, {name}", *points, **look))
-    title = f"{MAIN.liquid.title}, step {FLOOR_STEP:g} fs"
-    words = "fluctuation of the energy, kcal/mol"
-    return (Panel(title, "accuracy of kspace_style", words, curves, log="xy", columns=2),)
+def table(results, liquids, quantity, header):
+    """A row for each liquid and method with a ``quantity(runs, liquid)`` at each step."""
+    rows = []
+    for liquid, (method, name) in itertools.product(liquids, NAMES.items()):
+        cells = []
+        for dt in STEPS:
+            runs = results.runs[liquid.key, method.key, dt]
+            ends = _ends(runs)
+            lost = f"{len(ends)} of {len(runs)} lost, after {min(ends, default=0.0):.1f} ps"
+            cells.append(lost if ends else with_error(*quantity(runs, liquid), sign="+"))
+        rows.append([liquid.title, name, *cells])
+    return Table((header, "method", *(f"{dt:g} fs" for dt in STEPS)), rows)
 
 
-def heavy_panels(results):
-    """Radial distribution functions with larger inertia and with the inertia of the model."""
-    panels = []
-    for column, name in ((1, "O–O"), (2, "O–H")):
-        curves = []
-        for color, ((key, dt), pairs) in zip(("black", "C0", "C1", "C2"), results.pairs.items()):
-            mean, factor = np.mean(pairs, axis=0), HEAVY.inertia if key == HEAVY.key else 1.0
-            label = f"inertia × {factor:g}, {dt:g} fs"
-            curves.append(Curve(label, mean[:, 0], mean[:, column], color))
-        panels.append(Panel(MAIN.liquid.title, "r, Å", f"g(r), {name}", curves, log="", columns=2))
-    return tuple(panels)
+def measurements(results):
+    """Bounds for water; those that depend on statistical errors apply only if the errors are from several starts."""
+    for liquid, dt in itertools.product(WATERS, MOST_DRIFT):
+        runs = results.runs[liquid.key, AUTOMATIC.key, dt]
+        rate, error = (math.inf, 0.0) if _ends(runs) else drift(runs, liquid)
+        most = MOST_DRIFT[dt] + WITHIN * error
+        what = f"{liquid.title}, {dt:g} fs: drift"
+        yield Measurement(what, rate, error, ".4f", UNIT, least=-most, most=most)
+    for dt in TEMPERED:
+        runs = results.runs[SPCE.key, AUTOMATIC.key, dt]
+        value, error = (math.inf, 0.0) if _ends(runs) else warmer(runs, SPCE)
+        bounds = {"least": -WITHIN * error, "most": WITHIN * error} if len(runs) > 1 else {}
+        what = f"{SPCE.title}, {dt:g} fs: T translation − T rotation"
+        yield Measurement(what, value, error, ".2f", "K", **bounds)
 
 
 def find(results):
     """Finding of Results."""
     tables = {
-        "floor": floor_table(results),
-        "prediction": prediction_table(results),
-        "chosen": chosen_table(results),
-        "heavy": heavy_table(results),
-        "spectra": spectra_table(results),
+        "drift": table(results, LIQUIDS, drift, f"drift, {UNIT}"),
+        "temperatures": table(results, WATERS, warmer, "T translation − T rotation, K"),
     }
-    for scene in SCENES:
-        tables |= scene_tables(results, scene)
-    note = f"crosses: lost, or a drift above {LARGEST:g}"
-    pictures = {
-        "drift": partial(draw, panels=drift_panels(results), columns=3, note=note),
-        "state": state_panels(results),
-        "floor": floor_panels(results),
-        "heavy": heavy_panels(results),
-    }
-    context = {
-        "floors": floors(results),
-        "advice": advice(results).lines,
-        "plan": results.plan,
-        "scenes": SCENES,
-        "waters": [scene for scene in SCENES if scene.liquid in WATERS],
-        "main": MAIN,
-        "heavy": HEAVY,
-        "names": {"default": NAMES[DEFAULT]},
-        "liquids": LIQUIDS,
-        "blocks": of.BLOCKS,
-        "unit": UNIT,
-        "floor_step": FLOOR_STEP,
-    }
-    return Finding(judging.measurements(results), tables, pictures, context)
+    context = {"plan": results.plan, "blocks": BLOCKS}
+    rows = [
+        [liquid.title, liquid.molecules, liquid.density, liquid.temperature, f"`{liquid.pair}`", f"`{liquid.kspace} {liquid.accuracy}`"]
+        for liquid in LIQUIDS
+    ]
+    header = ("liquid", "molecules", "density, g/cm³", "temperature, K", "pair style", "kspace style")
+    tables["liquids"] = Table(header, rows)
+    return Finding(tuple(measurements(results)), tables, context=context)
 
 
-STUDY = Study("liquids", "Real liquids", 4200.0, measure, find)
+STUDY = Study("liquids", "Energy and temperatures of liquids", 3600.0, measure, find, blocks={"doc/accuracy.md": "liquids.md.j2"})

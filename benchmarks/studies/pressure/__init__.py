@@ -1,6 +1,6 @@
 """Constant pressure: the barostat of the fix compared with fix rigid/npt/small, and with fix shake and fix npt.
 
-Water with PPPM (``examples/water_npt``) shows the drift of the conserved energy and the cost of a step.  A crystal of
+Water with PPPM (``examples/water_npt``) shows the drift of the conserved energy.  A crystal of
 dumbbells under a different pressure along each axis (``in.crystal``) shows whether each component reaches its target.
 """
 
@@ -13,8 +13,6 @@ import numpy as np
 
 from benchmarks.engine import EXAMPLES, Finding, Measurement, Study, Table
 from benchmarks.engine.statistics import Mean, allowed, mean_of_series, slope, with_error
-
-from . import instructions
 
 OURS, RIGID, SHAKE = "gear", "rigid", "shake"
 SHEARED, SMALL = "sheared", "small"
@@ -32,7 +30,7 @@ COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
 
 @dataclass(frozen=True)
 class Plan:
-    """Sizes of all runs.  Times of water in fs; ``copies`` along each edge and steps for counts of instructions."""
+    """Sizes of all runs.  Times of water in fs."""
 
     dts: tuple = (1.0, 2.0)
     time: float = 5_000.0
@@ -43,11 +41,9 @@ class Plan:
     settle: int = 3_000
     long: int = 400_000
     blocks: int = 8
-    copies: int = 2
-    counted_steps: int = 20
 
 
-QUICK = Plan((2.0,), 500.0, 200.0, seeds=(1, 2), crystal=2_000, settle=1_000, long=4_000, blocks=4, copies=1, counted_steps=4)
+QUICK = Plan((2.0,), 500.0, 200.0, seeds=(1, 2), crystal=2_000, settle=1_000, long=4_000, blocks=4)
 #: hours of computing
 FULL = Plan(time=30_000.0, crystal=200_000, blocks=20)
 
@@ -55,12 +51,11 @@ FULL = Plan(time=30_000.0, crystal=200_000, blocks=20)
 @dataclass(frozen=True)
 class Results:
     """``water``: (method, step, seed) -> columns of a run; ``crystal``: method -> columns; the key SHEARED has a crystal
-    that may shear, and SMALL a crystal of few dumbbells; ``counted``: method -> Instructions."""
+    that may shear, and SMALL a crystal of few dumbbells."""
 
     plan: Plan
     water: dict
     crystal: dict
-    counted: dict
 
     def drift(self, method, dt):
         """Drift of the conserved energy in kT/ns/dof: mean over seeds, and its standard error from their scatter.
@@ -134,15 +129,12 @@ def measure(lab, plan=None):
     with lab.share(0.6):
         water = lab.sweep("water", WATER, axes, keep, sizes, keep=True)
     settings = {"steps": plan.crystal, "equilibrate": plan.settle}
-    with lab.share(0.3):
+    with lab.share(0.4):
         crystal = lab.sweep("crystal", CRYSTAL, {"method": (OURS, RIGID)}, keep, settings, keep=True)
         further = {SHEARED: settings | {"pxy": SHEAR}, SMALL: settings | {"cells": FEW, "steps": plan.long, "pdamp": PDAMP}}
         for name, words in further.items():
             crystal[name] = lab.sweep(name, CRYSTAL, {"method": (OURS,)}, keep, words, keep=True)[OURS]
-    settings = {"dt": plan.dts[-1], "copies": plan.copies}
-    with lab.share(0.1):
-        counted = instructions.measure(lab, WATER, settings, METHODS, MOLECULES * plan.copies**3, plan.counted_steps)
-    return Results(plan, water, crystal, counted)
+    return Results(plan, water, crystal)
 
 
 # --- judging ------------------------------------------------------------------------------------
@@ -177,19 +169,7 @@ def measurements(results):
     shift, most = largest(results.sheared(), results.expected_sheared())
     what = "crystal under a shear stress, largest deviation of one of six components of the pressure"
     rows.append(Measurement(what, shift, most=most, **errors))
-    ours = results.counted[OURS]
-    for method in (RIGID, SHAKE):
-        theirs, words = results.counted[method], METHODS[method]
-        rows.append(Measurement(f"ratio of instructions per step to {words}", ours.step / theirs.step, spec=".3f"))
-        what = f"ratio of instructions in the fix to {words}, without the mesh"
-        rows.append(Measurement(what, ours.fixes / theirs.fixes, spec=".2f"))
     return rows
-
-
-def cost_table(results):
-    """A row for each method: instructions per molecule and step."""
-    rows = [[METHODS[m], *(f"{n:.0f}" for n in (c.fixes, c.mesh, c.step))] for m, c in results.counted.items()]
-    return Table(("method", "in the fixes", "mesh of the new box", "whole step"), rows)
 
 
 def water_table(results):
@@ -225,7 +205,7 @@ def shear_table(results):
 
 def find(results):
     """Finding of Results."""
-    tables = {"water": water_table(results), "cost": cost_table(results), "crystal": crystal_table(results), "shear": shear_table(results)}
+    tables = {"water": water_table(results), "crystal": crystal_table(results), "shear": shear_table(results)}
     context = {"plan": results.plan, "molecules": MOLECULES, "share": results.share_of_box()}
     context |= {"shares": results.shares(), "few": 4 * FEW**3}
     context["with_error"] = with_error
@@ -239,4 +219,4 @@ def find(results):
     return Finding(measurements(results), tables, context=context)
 
 
-STUDY = Study("pressure", "Constant pressure", 600.0, measure, find, blocks={"README.md": "pressure.readme.md.j2"})
+STUDY = Study("pressure", "Constant pressure", 600.0, measure, find, blocks={"doc/pressure.md": "pressure.md.j2", "README.md": "pressure.readme.md.j2"})

@@ -9,16 +9,14 @@ import numpy as np
 
 from benchmarks.engine import Curve, Finding, Panel, Study
 from benchmarks.engine.session import Session
+from benchmarks.engine.costs import cost_of
 from benchmarks.reference import multistep, solvers
-from benchmarks.studies.accuracy import heldout
-from benchmarks.studies.accuracy.evaluate import cost_of
+from benchmarks.studies.accuracy import SAMPLE
 
 from . import peers, scenes, strongest
 
-#: error of the sentences, and methods of the picture with their colors
-SAMPLE = 1e-6
+#: methods of the picture with their colors
 SHOWN = {scenes.FIXED: "#0072b2", scenes.TOLERANCE: "#d55e00", multistep.LABEL: "#9467bd", solvers.DDEABM: "#009e73"}
-SHOWN |= {solvers.PAIR: "#e69f00", peers.CVODE: "#8c564b", "DOP853": "#56b4e9", "LSODA": "#cc79a7"}
 
 
 def measure(lab):
@@ -41,7 +39,7 @@ def _panel(results):
             line = {"width": 2.0} if name in strongest.OURS else {"line": "-."}
             shown.append(Curve(name.strip("`"), *curve[:, np.isfinite(curve).all(axis=0)], color, **line))
     axes = "force evaluations, start included", "error of the center of mass"
-    return Panel(scenes.CASE1, *axes, tuple(shown), "xy", ylim=(1e-11, 1.0))
+    return Panel("Keyword tolerance needs the fewest evaluations", *axes, tuple(shown), "xy", ylim=(1e-11, 1.0))
 
 
 def find(results):
@@ -52,7 +50,7 @@ def find(results):
     own, (name, peer) = strongest.compared(results)[scenes.CASE1][strongest.TARGETS.index(SAMPLE)]
     counts = [strongest.count_text(cost) for cost in (*own.values(), peer)]
     context = {"losses": texts, "comparisons": number, "lost": list(lost.values()), "peer": name, "counts": counts}
-    context |= {"weights": (peers.FEW, len(peers.WEIGHTS)), "passes": f"{scenes.PASSES:g}", "starts": heldout.STARTS}
+    context |= {"weights": (peers.FEW, len(peers.WEIGHTS)), "passes": f"{scenes.PASSES:g}", "starts": scenes.STARTS}
     context |= {"sample": strongest.power(SAMPLE)}
     return Finding(measurements, tables, {"main": (_panel(results),)}, context)
 
@@ -63,5 +61,5 @@ STUDY = Study(
     700.0,
     measure,
     find,
-    blocks={"README.md": "rivals.readme.md.j2", "paper/paper.md": "rivals.paper.md.j2"},
+    blocks={"doc/accuracy.md": "rivals.md.j2", "README.md": "rivals.readme.md.j2", "paper/paper.md": "rivals.paper.md.j2"},
 )

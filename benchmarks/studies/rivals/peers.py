@@ -1,9 +1,7 @@
 """The methods that the fix is compared with, counted in evaluations of the forces.
 
-These are solvers that control their steps, splittings with exact free rotation, a symmetric multistep method, and
-compositions of the steps of fix rigid/nve/small.  A method that controls its steps runs with several weights of the
-kinds of variables, and the best ones count.  LAMMPS runs the compositions itself: a step may be negative, and ``run 1
-pre no`` continues the last run.  The composition of order 4 is from M. Suzuki, Phys. Lett. A 146, 319 (1990).
+These are solvers that control their steps, splittings with exact free rotation, and a symmetric multistep method.  A
+method that controls its steps runs with several weights of the kinds of variables, and the best ones count.
 """
 
 import warnings
@@ -11,25 +9,16 @@ from functools import partial
 
 import numpy as np
 
+from benchmarks.engine.methods import AUTOMATIC
 from benchmarks.engine.session import RunError
-from benchmarks.engine.sites import pose_errors
 from benchmarks.reference import multistep, solvers, splittings
-from benchmarks.reference.splittings import KAHAN_LI, NEARLY_FREE, SPLITTINGS, symmetric
-from benchmarks.studies.accuracy import plan
 
-SUZUKI = 1 / (4 - 4 ** (1 / 3))
-#: name -> parts of a step, each a step of fix rigid/nve/small
-COMPOSITIONS = {
-    f"{plan.RIGID_NVE.label} composed, order 4": symmetric(SUZUKI, SUZUKI, even=False),
-    f"{plan.RIGID_NVE.label} composed, order 8": KAHAN_LI,
-}
 CVODE = "CVODE Adams"
-ADAPTIVE = (solvers.DDEABM, CVODE, solvers.PAIR, *solvers.METHODS)
-SPLIT = {own.label: own for own in (*NEARLY_FREE, *SPLITTINGS)}
-#: methods that are also run from the held-out starts, where forces are strong, and in the other scenes
+ADAPTIVE = (solvers.DDEABM, CVODE, "DOP853")
+SPLIT = {own.label: own for own in splittings.SPLITTINGS}
+#: methods that are also run from the random starts, where forces are strong
 OF_STARTS = (*ADAPTIVE, multistep.LABEL)
-STRONGEST = (*OF_STARTS, *list(SPLIT)[:4])
-NAMES = (*ADAPTIVE, multistep.LABEL, *SPLIT, *COMPOSITIONS)
+NAMES = (*OF_STARTS, *SPLIT)
 #: weights of the kinds of variables: the error of a length of 1 weighs the same as that of an angle times the radius of
 #: gyration, and as that of a rate over a part of the run.  Pairs of angle and part; most scenes have FEW of them.
 WEIGHTS = (1.0, 0.1), (0.1, 0.01), (0.1, 0.1), (1.0, 0.01)
@@ -57,9 +46,8 @@ def errors_of_state(reference, state):
 
 def errors_of_outcome(reference, outcome):
     """The same of an Outcome of LAMMPS."""
-    places, body = reference.positions(outcome), outcome.molecules > 0
-    errors = pose_errors(outcome.masses, outcome.molecules, outcome.before, outcome.after, places)
-    return *errors, _rms((outcome.after - places)[body])
+    off = (outcome.after - reference.positions(outcome))[outcome.molecules > 0]
+    return *reference.errors(outcome), _rms(off)
 
 
 def curve(settings, run):
@@ -84,10 +72,10 @@ def fixed(session, scene, reference):
     """Curve of the fix without keywords over the numbers of steps of a scene."""
 
     def run(steps):
-        outcome = plan.Run(scene, plan.DEFAULT, steps).perform(session)
+        outcome = scene.perform(session, AUTOMATIC, steps)
         return 1 + outcome.start + steps, errors_of_outcome(reference, outcome)
 
-    return curve(scene.gear_blocks, run)
+    return curve(scene.steps, run)
 
 
 def controlled(session, scene, reference):
@@ -131,24 +119,13 @@ def _equal_steps(scene, reference, name):
             ((state, evaluations),) = splittings.states(*task, SPLIT[name], steps)
         return evaluations, errors_of_state(reference, state)
 
-    numbers = scene.gear_blocks  # of the multistep method as of the fix
+    numbers = scene.steps  # of the multistep method as of the fix
     if name in SPLIT:
         numbers = [round(evaluations / SPLIT[name].stages) for evaluations in scene.evaluations]
     return curve(numbers, run)
 
 
-def _composed(session, scene, reference, parts):
-    """Curve of a composition."""
-
-    def run(steps):
-        variables, evaluations = plan.Run(scene, plan.RIGID_NVE, steps).variables(False), 1 + steps * len(parts)
-        outcome = session.run(scene.deck, variables, "composed", 1e-3 * evaluations, parts)
-        return evaluations, errors_of_outcome(reference, outcome)
-
-    return curve([round(evaluations / len(parts)) for evaluations in scene.evaluations], run)
-
-
-def measure(lab, session, scene, reference, names):
+def measure(lab, scene, reference, names):
     """Name -> curves, lists of (tolerance or number of steps, evaluations, errors of centers, orientations, sites)."""
     skipped = {CVODE} - set(solvers.available())
     skipped |= set() if scene.evaluations else set(NAMES) - set(ADAPTIVE)
@@ -156,8 +133,6 @@ def measure(lab, session, scene, reference, names):
     for name in names:
         if name in ADAPTIVE:
             found[name] = list(_adaptive(scene, reference, name, lab.quick))
-        elif name in COMPOSITIONS:
-            found[name] = [_composed(session, scene, reference, COMPOSITIONS[name])]
         else:
             found[name] = [_equal_steps(scene, reference, name)]
         lab.advance(1 / len(names))

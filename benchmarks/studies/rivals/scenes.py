@@ -2,26 +2,29 @@
 
 The first is test case 1.  Two are in the middle of its cage, where forces are weak and the body turns slowly or fast.
 Two molecules of water vibrate about a hydrogen bond, and a charge passes a fixed one at a small distance, where only
-methods that control their steps are of use.  The ten starts are those of heldout.py.
+methods that control their steps are of use.  Ten random starts near test case 1 were not used to choose any
+coefficient.
 """
 
-from dataclasses import dataclass, fields
-from itertools import islice
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from benchmarks.engine.decks import EXAMPLES
-from benchmarks.reference import Cage, Problem, State, paper_problem, reference_state
+from benchmarks.engine.decks import EXAMPLES, deck
+from benchmarks.reference import Cage, Problem, State, paper_problem
+from benchmarks.reference import quaternion as qt
 from benchmarks.reference.lammps_forces import deck_problem
 from benchmarks.reference.paper import SITE_MASSES, SITES
-from benchmarks.studies.accuracy import choice, heldout, plan
-from benchmarks.studies.accuracy.runs import Reference
+from benchmarks.studies import accuracy
+from benchmarks.studies.accuracy import Reference, geometric
 
 from . import peers
 
 CASE1 = "Test case 1"
+#: seed and number of the random starts, and their largest distance from test case 1 along each axis
+SEED, STARTS, AWAY = 2026, 10, 4.0
 #: angular velocity in the weak field, along the principal axes, and the factor of the fast rotation
 OMEGA, FASTER = (0.2, 0.3, 0.12), 8
 #: half of the angle of a molecule, distance of the oxygen atoms in angstrom, unit of the rates below in fs
@@ -38,14 +41,33 @@ QUICK_NAMES = ("DDEABM", "Quinlan–Tremaine 8", "SABA4, 4 stages")
 #: columns of the errors in the rows of peers.py
 COLUMNS = {"position": 2, "orientation": 3, "sites": 4}
 
-ENDING = """\
+HEAD = """\
+# {title}
+units {units}
+atom_style full
+atom_modify map array sort 0 0.0
+boundary f f f
+region box block -50 50 -50 50 -50 50
+create_box {types} box
+{atoms}
+{forces}
+neighbor 5.0 nsq
+neigh_modify once yes exclude molecule/intra all
 group body molecule > 0
 variable dt index 1
 variable steps index 1
 variable every index 1
 variable out index out
-include {}
+include {motion}
 """
+WATER = """\
+pair_style lj/cut/coul/cut 90.0
+pair_coeff * * 0.0 1.0
+pair_coeff 1 1 0.1553 3.166
+mass 1 15.9994
+mass 2 1.008
+set type 1 charge -0.8476
+set type 2 charge 0.4238"""
 
 
 class Center(Cage):
@@ -64,13 +86,14 @@ class Center(Cage):
 
 # --- scenes ---------------------------------------------------------------------------------------
 @dataclass(frozen=True, eq=False)
-class Scene(plan.Scene):
+class Scene(accuracy.Scene):
     """A scene of accuracy, of which the error may also be that of "sites".
 
-    ``tolerances`` of methods that control their steps; ``evaluations``: approximate numbers for splittings;
-    ``path`` of the deck, if it is not one of the examples.
+    ``steps``: numbers of steps of the fix, ascending; ``tolerances`` of methods that control their steps;
+    ``evaluations``: approximate numbers for splittings; ``path`` of the deck, if it is not one of the examples.
     """
 
+    steps: tuple = ()
     tolerances: tuple = ()
     evaluations: tuple = ()
     path: str = ""
@@ -86,6 +109,39 @@ def half_decades(first, last):
     return tuple(10.0 ** (-k / 2) for k in range(2 * first, 2 * last + 1))
 
 
+def random_starts():
+    """Problems of the body of test case 1, displaced along each axis, in random orientations."""
+    base, random = paper_problem(1), np.random.default_rng(SEED)
+    length = np.linalg.norm(base.start.omega_body.astype(float))
+    for number in range(1, STARTS + 1):
+        center = base.start.center + random.uniform(-AWAY, AWAY, (1, 3))
+        directions = random.normal(size=(2, 1, 3))
+        velocity, omega = directions / np.linalg.norm(directions, axis=2, keepdims=True)
+        q = qt.normalised(random.normal(size=(1, 4)).astype(base.dtype))
+        start = State(center, 0.2 * velocity, q, length * omega).astype(base.dtype)
+        yield Problem(f"start {number}", base.bodies, base.field, start)
+
+
+def write_data(path, problem):
+    """Write the data file of test case 1 with atoms 1 to 4 (the body) at their positions in a Problem.
+
+    Returns variables of the deck that name the file.
+    """
+    state = problem.start
+    rotation = qt.rotation_space_body(state.q)
+    spin = (rotation @ state.omega_body[..., None])[..., 0]
+    positions = problem.site_positions(state)
+    velocities = state.velocity + qt.cross(spin, positions - state.center)
+    lines = (deck("case1").parent / "data.consistent").read_text().splitlines()
+    for section, rows in (("Atoms # full", positions), ("Velocities", velocities)):
+        first = lines.index(section) + 2
+        for k, row in enumerate(rows.astype(np.float64)):
+            kept = lines[first + k].split()[:-3]
+            lines[first + k] = " ".join([*kept, *(f"{x:.17g}" for x in row)])
+    path.with_suffix(".consistent").write_text("\n".join(lines) + "\n")
+    return (("data", str(path)),)
+
+
 def _in_the_middle(omega):
     """The body of test case 1 in the middle of the cage."""
     base = paper_problem(1)
@@ -95,11 +151,25 @@ def _in_the_middle(omega):
     return Problem("middle of the cage", base.bodies, base.field, start)
 
 
+def _atoms(bodies, kinds, motions):
+    """Commands that create ``bodies``, arrays (n, 3) of sites, with pairs of velocity and angular velocity."""
+    lines, number = [], 0
+    for molecule, (sites, (velocity, omega)) in enumerate(zip(bodies, motions), 1):
+        middle = sites.mean(axis=0)
+        for kind, place in zip(kinds, sites):
+            number += 1
+            v = velocity + np.cross(omega, place - middle)
+            x, y, z = (f"{c:.15g}" for c in place)
+            lines.append(f"create_atoms {kind} single {x} {y} {z}")
+            lines.append(f"set atom {number} mol {molecule} vx {v[0]:.15g} vy {v[1]:.15g} vz {v[2]:.15g}")
+    return "\n".join(lines)
+
+
 def _deck(folder, name, units, types, forces, *bodies_kinds_motions):
     """Path of a deck that it writes, with the methods and outputs of examples."""
-    path, atoms = folder / f"in.{name}", choice.atoms(*bodies_kinds_motions)
-    head = choice.HEAD.format(title=name, units=units, types=types, atoms=atoms, forces=forces)
-    path.write_text(head + ENDING.format(EXAMPLES / "common" / "in.motion"))
+    path, motion = folder / f"in.{name}", EXAMPLES / "common" / "in.motion"
+    atoms = _atoms(*bodies_kinds_motions)
+    path.write_text(HEAD.format(title=name, units=units, types=types, atoms=atoms, forces=forces, motion=motion))
     return str(path)
 
 
@@ -110,7 +180,7 @@ def _pair(folder):
     turns = Rotation.from_euler("z", HALF - 90, degrees=True), Rotation.from_euler("zx", (-90, 60), degrees=True)
     bodies = [turn.apply(sites) + (x * APART / 2, 0, 0) for turn, x in zip(turns, (-1, 1))]
     rates = np.array([((0, 0.12, 0.1), (0.3, 0.2, -0.4)), ((0, -0.12, -0.1), (-0.3, 0.4, 0.2))]) / FS
-    return _deck(folder, "pair", "real", 2, choice.OF_WATER, bodies, (1, 2, 2), rates)
+    return _deck(folder, "pair", "real", 2, WATER, bodies, (1, 2, 2), rates)
 
 
 def _encounter(folder):
@@ -129,34 +199,30 @@ def scenes(folder, quick=False):
     folder = Path(folder).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     ratio = 2.0 if quick else 2**0.25
-    facts = {"samples": 1, "methods": (), "rigid_blocks": (), "measure": "sites"}
-    facts["tolerances"] = half_decades(2, 8) if quick else half_decades(1, 13)
-    starts = facts | {"measure": "position"}
+    tolerances = half_decades(2, 8) if quick else half_decades(1, 13)
 
-    def numbers(first, last):
-        evaluations = plan.geometric(first, 2 * last, ratio**2)
-        return {"gear_blocks": plan.geometric(first, last, ratio), "evaluations": evaluations}
+    def scene(key, title, end, first=0, last=0, measure="sites", tolerances=tolerances, **more):
+        if last:
+            more |= {"steps": geometric(first, last, ratio), "evaluations": geometric(first, 2 * last, ratio**2)}
+        return Scene(key, title, end, measure, tolerances=tolerances, **more)
 
-    yield Scene("case1", CASE1, 200.0, **starts, **numbers(300, 6000)), paper_problem(1)
+    yield scene("case1", CASE1, 200.0, 300, 6000, "position"), paper_problem(1)
     for key, title, end, factor, last in (
         ("weak", "Weak field, 200 time units", 200.0, 1, 3000),
         ("spin", "Fast rotation, 49 turns in a weak field", 100.0, FASTER, 9000),
     ):
-        problem, path = _in_the_middle(factor * np.array(OMEGA)), folder / key
-        path.with_suffix(".consistent").write_text(heldout.data_text(problem))
-        variables = (("data", str(path)),)
-        yield Scene(f"case1-{key}", title, end, variables=variables, **facts, **numbers(40, last)), problem
+        problem = _in_the_middle(factor * np.array(OMEGA))
+        yield scene(f"case1-{key}", title, end, 40, last, variables=write_data(folder / key, problem)), problem
     path = _pair(folder)
-    scene = Scene("pair", "Two molecules of water, 1 ps", 20 * FS, path=path, **facts, **numbers(150, 3000))
-    yield scene, deck_problem(path)
+    yield scene("pair", "Two molecules of water, 1 ps", 20 * FS, 150, 3000, path=path), deck_problem(path)
     path, title = _encounter(folder), "A charge that passes a fixed one at a small distance"
     problem = deck_problem(path)
     problem.field.close()
-    facts["tolerances"] = facts["tolerances"][4:]  # with larger ones, solvers pass through the singularity
-    yield Scene("encounter", title, 4.0, path=path, gear_blocks=(), **facts), problem.with_field(Center())
-    for scene, problem in islice(heldout.scenes(folder, quick), heldout.STARTS):
-        own = {one.name: getattr(scene, one.name) for one in fields(scene)}
-        yield Scene(**own | starts | numbers(30, 2400)), problem
+    # with larger tolerances, solvers pass through the singularity
+    yield scene("encounter", title, 4.0, path=path, tolerances=tolerances[4:]), problem.with_field(Center())
+    for number, problem in enumerate(random_starts(), 1):
+        variables = write_data(folder / f"start{number}", problem)
+        yield scene(f"case1-start{number}", problem.name, 100.0, 30, 2400, "position", variables=variables), problem
 
 
 # --- running --------------------------------------------------------------------------------------
@@ -167,17 +233,13 @@ def measure(lab, session):
         planned = [both for both in planned if both[0].key in QUICK]
     for scene, problem in planned:
         accuracy = {"tolerance": TIGHT} if isinstance(problem.field, Center) else {}
-        state = reference_state(problem, scene.end, folder=lab.out / "reference", **accuracy)
-        sites = problem.site_positions(state).astype(np.float64)
-        ids = getattr(problem.field, "ids", np.arange(1, len(sites) + 1))
-        reference = Reference(problem, state, ids, sites)
+        reference = Reference.of(problem, scene.end, lab.out / "reference", **accuracy)
         with lab.share(1 / len(planned)):
-            own = {FIXED: [peers.fixed(session, scene, reference)]} if scene.gear_blocks else {}
+            own = {FIXED: [peers.fixed(session, scene, reference)]} if scene.steps else {}
             own[TOLERANCE] = peers.controlled(session, scene, reference)
-            names = peers.OF_STARTS if scene.measure == "position" else peers.STRONGEST
-            names = peers.NAMES if scene.title == CASE1 else names
+            names = peers.OF_STARTS if scene.title.startswith("start") else peers.NAMES
             names = [name for name in names if name in QUICK_NAMES] if lab.quick else names
-            own |= peers.measure(lab, session, scene, reference, names)
+            own |= peers.measure(lab, scene, reference, names)
         found[scene.title] = COLUMNS[scene.measure], own
         if "ids" in vars(problem.field):
             problem.field.close()

@@ -3,8 +3,8 @@
 import numpy as np
 
 from benchmarks.engine import Measurement, Table
-from benchmarks.studies.accuracy.evaluate import cheapest, cost_of
-from benchmarks.studies.accuracy.tables import NONE, TARGETS, count_text, power, ratio_text
+from benchmarks.engine.costs import NONE, cheapest, cost_of, count_text, power, ratio_text
+from benchmarks.studies.accuracy import TARGETS
 
 from . import peers, scenes
 
@@ -61,7 +61,7 @@ def case1(results):
         page[name] = [count_text(costs(results, scenes.CASE1, target).get(name)) for target in TARGETS]
     page[OTHER] = [name or NONE for _, (name, _) in cells]
     for key in OURS:
-        texts = [ratio_text(peer and own[key] and peer.over(own[key]), False) for own, (_, peer) in cells]
+        texts = [ratio_text(peer and own[key] and peer.over(own[key])) for own, (_, peer) in cells]
         page[f"strongest other method / {words[key]}"] = short[f"strongest other method / {words[key]}"] = texts
         for target, most, (own, (name, peer)) in zip(TARGETS, MOST[key], cells):
             value, at = own[key].value if own[key] else np.nan, f"test case 1, error {power(target)}"

@@ -200,4 +200,4 @@ def find(results):
     return Finding(measurements(found), tables, pictures, context)
 
 
-STUDY = Study("water", "Averages of water", 3600.0, measure, find)
+STUDY = Study("water", "Averages of water", 3600.0, measure, find, blocks={"doc/water.md": "water.md.j2"})

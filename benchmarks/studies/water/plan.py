@@ -2,8 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from benchmarks.studies.liquids.plan import SPCE, WATER4
-from benchmarks.studies.liquids.plan import Plan as Starts
+from benchmarks.studies.liquids import SPCE, WATER4
 
 #: 216 molecules each
 MODELS = {liquid.key: liquid for liquid in (replace(WATER4, edge=6), SPCE)}

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.engine import Job, provenance
-from benchmarks.studies.liquids.runs import equilibrate, template
-from benchmarks.studies.liquids.plan import Plan as Starts
+from benchmarks.studies.liquids import Plan as Starts
+from benchmarks.studies.liquids import equilibrate, template
 
 from .frames import read_motion
 from .plan import BATCH, EXTRAPOLATED, LONG, MODELS, OURS, QUICK, RIVAL, TARGETS, TEMPERATURE, Plan, Series
@@ -181,11 +181,11 @@ def measure(lab, plan=None):
     samples = [] if lab.quick else [one for one in read_samples(SAMPLES) if one.trajectory == told[one.method]]
     commit = provenance.commit("src", "benchmarks/studies/water")
     starts = Starts(equilibration=plan.equilibration, shrinking=plan.shrinking)
-    seconds = timed(lab, equilibrate(lab, starts, [MODELS["tip4p"]], [1])["tip4p", 1], plan)
+    seconds = timed(lab, equilibrate(lab, starts, [(MODELS["tip4p"], [1])])["tip4p", 1], plan)
     while time.monotonic() - begun < 3600 * plan.hours or {sample.series for sample in samples} < set(TARGETS):
         chosen = next_runs(samples, len(TARGETS) if lab.quick else BATCH)
         models = [model for key, model in MODELS.items() if key in {series.model for series, _ in chosen}]
-        data = equilibrate(lab, starts, models, sorted({number for _, number in chosen}))
+        data = equilibrate(lab, starts, [(model, sorted({number for _, number in chosen})) for model in models])
         jobs = {f"{series.name}_{n}": job(series, data[series.model, n], n, plan) for series, n in chosen}
         finished = lab.many(jobs, keep=True)
         for series, n in chosen:

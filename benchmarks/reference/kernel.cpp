@@ -1,0 +1,16 @@
+/* The coefficients of formulation momentum, from the kernel of the fix, for stability.py. */
+
+#include "gear_quat_coefficients.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS::GearQuat;
+
+extern "C" {
+
+void tuned(int values, double *c)
+{
+  const auto found = tuned_set(values)->coefficients();
+  std::copy(found.begin(), found.end(), c);
+}
+}
