@@ -16,7 +16,6 @@ except ModuleNotFoundError as error:
     ) from error
 
 from .commands.cost import cost
-from .commands.horizon import horizon
 from .commands.scatter import scatter
 
 
@@ -42,14 +41,13 @@ def _apart(command, module):
 
 @cloup.group(
     sections=[
-        cloup.Section("Before a long run", [cost, horizon]),
+        cloup.Section("Before a long run", [cost]),
         cloup.Section("After it", [_apart(analysis.analyze, "gearquat_analysis")]),
         cloup.Section("Many short runs", [scatter]),
     ],
     context_settings=HELP,
     epilog=epilog(
         "gearquat cost examples/water/in.water --var method rigid --budget 30",
-        "gearquat horizon examples/case1/in.case1 --time 100",
     ),
 )
 @cloup.version_option(package_name="lammps-gearquat", message="%(version)s")

@@ -1,4 +1,4 @@
-"""The pictures of ``gearquat cost``, ``horizon`` and ``scatter``. This module computes nothing."""
+"""The pictures of ``gearquat cost`` and ``scatter``. This module computes nothing."""
 
 import matplotlib
 import numpy as np
@@ -11,7 +11,6 @@ from gearquat_analysis.tables import rounded
 from .trials import NORMS
 
 OWN = "#666666"
-FAINT = "#888888"
 FORMULATION = {"momentum": "Blues", "second": "Greens", "first": "Oranges"}
 #: with more decades than this on an axis, powers of ten are sufficient as ticks
 FEW_DECADES = 2.5
@@ -122,38 +121,6 @@ def draw_drifts(path, deck, answer):
         axis.set_xlabel(named("time step", deck.time_unit))
         axis.set_ylabel(f"drift ({'kT/ns/dof' if deck.time_unit else 'kT/1000 time units/dof'})")
         figure.legend(fontsize=8, loc="outside right upper")
-
-
-# --- horizon --------------------------------------------------------------------------------------
-def draw_horizon(path, deck, horizon):
-    """Differences against time, with the thresholds and the fitted growth."""
-    time, growth = horizon.time, horizon.growth
-    first, second = (
-        f"{trial.label if trial.keywords else 'as it is'}, step {trial.dt:g}" for trial in horizon.trials
-    )
-    title = f"{deck.path.name}: {first}\nagainst {second}"
-    curves = {"largest": "#0072b2", "rms": "#56b4e9", "angle": "#d55e00"}
-    labels = {"largest": "largest distance", "rms": "rms distance", "angle": "largest angle (rad)"}
-    with picture(path, title, figsize=(8, 5)) as (figure, axis):
-        for name, color in curves.items():
-            axis.semilogy(time, getattr(horizon, name), color=color, label=labels[name])
-        if growth:
-            fitted = time[(time >= growth.begin) & (time <= growth.end)]
-            label = f"Lyapunov time {rounded(growth.lyapunov_time)} {deck.time_unit}"
-            axis.semilogy(fitted, growth.at(fitted), color="black", linestyle="--", label=label)
-        line = {"color": FAINT, "linewidth": 0.6, "linestyle": ":"}
-        note = {"fontsize": 7, "color": OWN, "va": "bottom", "transform": axis.get_yaxis_transform()}
-        for level, parted in horizon.parting:
-            axis.axhline(level, **line)
-            threshold = f"threshold {level:g} {deck.length_unit}"
-            if np.isfinite(parted):
-                axis.axvline(parted, **line)
-                threshold += f", passed at {parted:.6g} {deck.time_unit}"
-            axis.text(0.01, level, threshold, **note)
-        axis.set_ylim(top=3 * max(axis.get_ylim()[1], horizon.parting[-1][0]))  # room for the last note
-        axis.set_xlabel(named("time", deck.time_unit))
-        axis.set_ylabel(f"difference of the two runs ({deck.length_unit}, rad)")
-        figure.legend(fontsize=8, loc="outside lower center", ncols=4)
 
 
 # --- scatter --------------------------------------------------------------------------------------

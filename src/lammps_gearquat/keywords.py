@@ -63,11 +63,6 @@ class Keyword:
         limits = re.findall(r"(\d+) to (\d+)(?: \(([\w, ]+)\))?", self.values)
         return {name: (int(low), int(high)) for low, high, names in limits for name in names.split(", ")}
 
-    def suits(self, formulation):
-        """True if a value that was given with another formulation has the same meaning with this one."""
-        allowed = [value.split("|") for name, value, _ in self.requires if name == "formulation"]
-        return len(self.ranges) <= 1 and all(len(values) > 1 and formulation in values for values in allowed)
-
 
 def _condition(text):
     name, *words = text.split()

@@ -15,7 +15,7 @@ from dumps import Motion, write
 from pages import paste, unpack
 from running import ROOT
 
-COMMANDS = ("", "cost", "horizon", "analyze", "scatter")
+COMMANDS = ("", "cost", "analyze", "scatter")
 
 
 def examples_of(command):

@@ -1,4 +1,4 @@
-"""gearquat cost and gearquat horizon on real decks, in real LAMMPS."""
+"""gearquat cost on real decks, in real LAMMPS."""
 
 import csv
 import math
@@ -14,10 +14,9 @@ from click.testing import CliRunner
 from clumps import FIX, FOR_GEAR
 
 from lammps_gearquat.commands.cost import cost as cost_command
-from lammps_gearquat.commands.horizon import horizon as horizon_command
 from gearquat_analysis.bodies import Bodies
 from lammps_gearquat.launch import LammpsError
-from lammps_gearquat.trials import cost, doubt, evaluate, horizon, measure, report
+from lammps_gearquat.trials import cost, doubt, evaluate, measure, report, until
 from lammps_gearquat.trials.measure import Deck
 from lammps_gearquat.trials.script import DeckError
 from running import processes_that_mention
@@ -117,9 +116,8 @@ def test_trials_of_a_deck_whose_step_follows_the_error(make_deck):
         assert deck.fix_lines(None) == [plain]
         assert "tolerance, dtmax left out" in deck.notes[0]
         own, gear = (deck.run_to(words, 0.4, 100) for words in (None, "values 9"))
-        with pytest.raises(DeckError, match="keyword tolerance: its steps follow .* with --a"):
-            horizon.measure(deck, time=0.4)
-        assert horizon.measure(deck, "values 8", time=0.4).trials[0].dt == deck.dt
+        with pytest.raises(DeckError, match="keyword tolerance: its steps follow .* for --until"):
+            until.measure(deck, cost.Budget(30.0), [0.1], time=0.4)
     assert np.array_equal(own.positions, gear.positions)
 
 
@@ -137,10 +135,8 @@ def test_keyword_tolerance_is_tried_where_few_bodies_move(make_deck):
 def test_trials_of_an_isokinetic_deck(make_deck):
     line = FIX.replace("${style}", "gear/quat") + " formulation first isokinetic total"
     with Deck(make_deck(**{FIX: line}, **FOR_GEAR)) as deck:
-        found = horizon.measure(deck, time=0.4)
+        found = until.measure(deck, cost.Budget(30.0), [0.1], time=0.4)
         costs = cost.measure(deck, cost.Budget(6.0), errors=[1e-4], time=0.4, timings=1)
-        with pytest.raises(DeckError, match="belongs to formulation first"):
-            horizon.measure(deck, time=0.4, b="formulation second")
     assert found.trials[1].keywords == "formulation first values 7 compensate yes"
     assert found.largest[-1] < 1e-4
     assert costs.rows[0].best is not None
@@ -153,7 +149,7 @@ CHAINS = FIX.replace("${style}", "gear/quat") + " values 9 temp 0.5 0.8 0.3 tcha
 def test_trials_at_constant_temperature(make_deck):
     """All methods have the thermostat of the deck, with its ramp over the whole run."""
     with Deck(make_deck(**{FIX: CHAINS}, **FOR_GEAR)) as deck:
-        found = horizon.measure(deck, time=0.4)
+        found = until.measure(deck, cost.Budget(30.0), [0.1], time=0.4)
         costs = cost.measure(deck, cost.Budget(6.0), errors=[1e-4], time=0.4, timings=1)
         other = deck.fix_lines("formulation first values 8")
     assert deck.notes == [] and other[0].endswith("temp 0.5 0.8 0.3 tchain 2 thermostat separate")
@@ -509,53 +505,31 @@ def test_usable_step_is_never_larger():
         assert float(f"{cut:.1e}") == cut
 
 
-# --- horizon ------------------------------------------------------------------------------------------
-def test_table_7_is_one_use_of_horizon(run_case, examples, tmp_path):
-    """Test case 2 with the settings of the paper: the times are the same as from the two runs themselves."""
-    thresholds = (0.1, 1.0, 3.0)
-    variables = {"choices": "paper", "steps": 4000, "every": 8}
-    series = [run_case(2, formulation=name, **variables) for name in ("first", "second")]
-    distance = np.linalg.norm(series[0].center - series[1].center, axis=1)
-    expected = [evaluate.parting_time(series[0].time, distance, level) for level in thresholds]
-    out = tmp_path / "out"
-    arguments = ["--var", "choices", "paper", "--time", "500", "--every", "1", "--out", str(out)]
-    arguments += ["--a", "formulation first values 5 momentum predicted"]
-    arguments += ["--b", "formulation second"]
-    arguments += [word for level in thresholds for word in ("--threshold", str(level))]
-    deck = str(examples / "case2" / "in.case2")
-    result = CliRunner().invoke(horizon_command, [deck, *arguments])
-    assert result.exit_code == 0, result.output
-    found = [float(row["time"]) for row in read(out / "parting.csv")]
-    assert all(math.isfinite(time) for time in expected)
-    assert found == expected
-    assert (out / "horizon.png").stat().st_size > 10_000
-    # the whole curve, not only where it passes a threshold
-    apart = [float(row["largest_position"]) for row in read(out / "horizon.csv")]
-    early = slice(0, int(expected[0]))
-    assert apart[early] == pytest.approx(distance[1:][early], rel=1e-6)
-
-
+# --- until --------------------------------------------------------------------------------------------
 def test_deck_as_it_is_against_an_accurate_one(make_deck):
-    with Deck(make_deck()) as deck:
-        found = horizon.measure(deck, time=1.0, thresholds=[1e-6, 1e9])
-        finer = horizon.measure(deck, time=1.0, steps=(0.002, None), thresholds=[1e-6])
-        assert "as it is" in report.horizon_text(deck, found) and "1e-06 σ  from t =" in report.horizon_text(deck, found)
-    (level, parted), (_, never) = found.parting
+    with Deck(make_deck(**{"boundary f f f": "boundary m m m"})) as deck:
+        found = until.measure(deck, cost.Budget(30.0), [1e9, 1e-6], time=1.0)
+        text = report.parting_text(deck, found)
+        with pytest.raises(DeckError, match="shorter than a step"):
+            until.measure(deck, cost.Budget(30.0), [1e-6], time=1e-4)
+        deck.start.steps = 10**9
+        reached = until.measure(deck, cost.Budget(3.0), [1e-6])
+    assert "as it is" in text and "1e-06 σ  from t =" in text and "1e+09 σ  not before t = 1" in text
+    (level, parted), (_, never) = found.times
     assert math.isinf(never) and 0 < parted < 1.0
-    assert found.time[-1] == pytest.approx(1.0)
+    assert found.time[-1] == pytest.approx(1.0) and found.trials[1].dt == deck.dt / 2
     after = found.largest[found.time >= parted]
     assert after[0] > level >= found.largest[found.time < parted].max()
-    assert finer.parting[0][1] > parted
-    assert 3.0 < found.largest[-1] / finer.largest[-1] < 5.0  # fix rigid is of second order
+    assert reached.time[-1] < deck.end and any("to stay within the budget" in note for note in reached.notes)
 
 
-def test_samples_have_to_fit_the_step(make_deck):
-    with Deck(make_deck()) as deck:
-        with pytest.raises(DeckError, match="not a multiple of the time step"):
-            horizon.measure(deck, time=1.0, every=0.0101)
-        with pytest.raises(DeckError, match="shorter than one sample"):
-            horizon.measure(deck, time=1e-4)
-        fitted = horizon.measure(deck, time=0.2, every=0.02, steps=(None, 0.003))
-    assert fitted.trials[1].dt == pytest.approx(0.02 / 7)
-    assert [level for level, _ in fitted.parting] == [0.01, 0.1, 0.3]  # to the last digit
-    assert any("second step" in note for note in fitted.notes)
+def test_the_error_of_a_run_is_its_distance_from_the_accurate_one(make_deck, tmp_path):
+    """fix rigid is of second order: half of the step has a quarter of the error."""
+    largest = []
+    for dt in (0.004, 0.002):
+        out = tmp_path / f"{dt}"
+        words = [str(make_deck(**{"timestep 0.004": f"timestep {dt}"})), "--until", "1e-6", "--time", "1", "--out", str(out)]
+        result = CliRunner().invoke(cost_command, words)
+        assert result.exit_code == 0, result.output
+        largest.append(float(read(out / "until.csv")[-1]["largest_position"]))
+    assert 3.0 < largest[0] / largest[1] < 5.0

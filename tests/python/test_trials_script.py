@@ -147,16 +147,9 @@ def test_keywords_of_the_method_are_replaced_and_those_of_the_body_kept():
     line = parse(f"fix 1 a gear/quat single {own} infile f")
     values = "formulation second values 8"
     assert line.with_numerics(values).text() == f"fix 1 a gear/quat single {values} infile f"
-    assert line.numerics("") == own
-    assert line.numerics("values 7") == f"{own} values 7"
-    first = "formulation first momentum predicted"
-    assert line.numerics(first) == "formulation first start zero momentum predicted"
-    paper = parse("fix 1 a gear/quat single preset paper passes 1 project no compensate yes infile f")
-    assert paper.numerics("formulation first") == "preset paper passes 1 project no compensate yes formulation first"
-    assert paper.numerics("formulation momentum") == "compensate yes formulation momentum"
     for wrong in ("values", "valus 8", "infile g"):
         with pytest.raises(DeckError, match="pairs of a keyword"):
-            line.numerics(wrong)
+            line.with_numerics(wrong)
 
 
 def test_what_is_left_out_is_said():

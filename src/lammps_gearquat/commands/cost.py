@@ -11,12 +11,13 @@ from ..trials import BOUND, NORMS
 from ..trials.script import DeckError, pairs
 from .common import announce, deck_options, ending_cleanly, results_folder, shown_progress
 
-LEAVES = ("cost.csv", "trials.csv", "cost.png")
+LEAVES = ("cost.csv", "trials.csv", "cost.png", "until.csv")
 
 
 @command(
     "gearquat cost examples/water/in.water --var method rigid --budget 30",
     "gearquat cost examples/case1/in.case1 --error 1e-3 --error 1e-6 --time 20 --out case1",
+    "gearquat cost examples/case1/in.case1 --until 1e-3 --time 100 --out until",
 )
 @deck_options
 @cloup.option_group(
@@ -57,6 +58,15 @@ LEAVES = ("cost.csv", "trials.csv", "cost.png")
         metavar="KEYWORDS",
         help='Further keywords of the fix to try, such as "values 8 corrector gear".',
     ),
+    cloup.option(
+        "--until",
+        "distances",
+        type=POSITIVE,
+        multiple=True,
+        metavar="LENGTH",
+        help="Instead of costs, find the time until which all bodies stay within this distance of an accurate run;"
+        " repeatable.",
+    ),
 )
 @cloup.option_group(
     "Budget and output",
@@ -67,10 +77,10 @@ LEAVES = ("cost.csv", "trials.csv", "cost.png")
         help="Seconds of wall time for everything, runs before the measured one included.",
     ),
     cloup.option("--timings", type=COUNT, default=5, help="Timings of each trial that matters, interleaved."),
-    out_option("gearquat-cost", "cost.csv, trials.csv and cost.png"),
+    out_option("gearquat-cost", "cost.csv, trials.csv and cost.png, or until.csv"),
 )
 @failing_clearly(DeckError, LammpsError)
-def cost(scene, errors, time, norm, bound, budget, timings, tries, out):
+def cost(scene, errors, time, norm, bound, budget, timings, tries, distances, out):
     """Measure the cost of accuracy in the simulation of DECK, and print the lines to put into it.
 
     DECK is any LAMMPS input script with fix gear/quat, rigid, rigid/nve, rigid/small or
@@ -83,16 +93,19 @@ def cost(scene, errors, time, norm, bound, budget, timings, tries, out):
     Trajectories of a liquid diverge before the end of the run.  Then, unless --error or --time is given, long runs
     are compared instead: by energy drift and by the temperatures of translation and rotation.  A step whose energy
     drifts by more than --drift is not recommended.
+
+    With --until, the deck as it is runs beside the fix with small errors at half of its step, and the command reports
+    when the two runs part.
     """
     begin = monotonic()
     from .. import figures
     from ..trials import cost as trials
-    from ..trials import report, sampling, sampling_report
+    from ..trials import report, sampling, sampling_report, until
     from ..trials.measure import Deck
 
     for text in tries:
         pairs(text)
-    asked = {"error": errors, "of": norm, "time": time, "drift": bound, "try": tries}
+    asked = {"error": errors, "of": norm, "time": time, "drift": bound, "try": tries, "until": distances}
     folder = results_folder(out, scene, asked, LEAVES, budget=budget, timings=timings)
     bar = shown_progress(total=round(budget), bar_format="{l_bar}{bar}| {elapsed}")
     with ending_cleanly(out), bar as progress:
@@ -100,9 +113,15 @@ def cost(scene, errors, time, norm, bound, budget, timings, tries, out):
         clock.say("following the deck")
         say = announce(scene["path"], progress)
         with Deck(**scene, say=say, on_wait=clock.spent, timeout=trials.SHARE_BEFORE * budget) as deck:
-            answer = trials.measure(deck, clock, errors, time, timings, NORMS.index(norm), tries, bound)
+            if distances:
+                answer = until.measure(deck, clock, distances, time)
+            else:
+                answer = trials.measure(deck, clock, errors, time, timings, NORMS.index(norm), tries, bound)
     folder.fill(cloup.echo)
-    if isinstance(answer, sampling.Sampling):
+    if isinstance(answer, until.Parting):
+        report.write_parting(out, answer)
+        text = report.parting_text(deck, answer)
+    elif isinstance(answer, sampling.Sampling):
         sampling_report.write(out, answer)
         figures.draw_drifts(out / "cost.png", deck, answer)
         text = sampling_report.text(deck, answer)
@@ -110,4 +129,4 @@ def cost(scene, errors, time, norm, bound, budget, timings, tries, out):
         report.write_costs(out, deck, answer)
         figures.draw_cost(out / "cost.png", deck, answer)
         text = report.cost_text(deck, answer)
-    cloup.echo(f"{text}\n\nTables and picture are in {out.resolve()}")
+    cloup.echo(f"{text}\n\nResults are in {out.resolve()}")

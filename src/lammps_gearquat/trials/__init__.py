@@ -6,13 +6,13 @@ checkpoint      the state after a run, saved and restored
 process         a process of LAMMPS: it follows a deck, then replays it with other fix lines and steps
 worker          that process, or its ranks, as the caller sees it; gearquat scatter has several
 measure         trials of one deck: positions of its bodies, and the cost of reaching them
-evaluate        prices, trends and growth: arrays in, numbers out
+evaluate        prices and trends: arrays in, numbers out
 methods         the keywords of the fix that are tried
 doubt           the time until which errors can be judged
 drift           the drift of the energy, and the temperatures of translation and rotation, at one step
 sampling        the longest steps for long runs, where trajectories diverge
 explain         causes of LAMMPS' errors, and what to write then
-cost, horizon   the two questions
+cost, until     the two questions
 report          the answers as text and tables; sampling_report, those of sampling
 """
 

@@ -1,11 +1,10 @@
-"""Errors of bodies, cost of an error, energy drift, and growth of a difference.  Arrays in, numbers out."""
+"""Errors of bodies, cost of an error, and energy drift.  Arrays in, numbers out."""
 
 import math
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 
 # --- bodies ---------------------------------------------------------------------------------------
@@ -125,8 +124,6 @@ FEWEST = 20
 WALKS = np.concatenate([[0.0], np.logspace(-5, 0, 21)])
 
 
-
-
 def trend(time, values):
     """Slope of ``values`` (n,) against equidistant ``time`` (n,), and its standard error.
 
@@ -171,75 +168,3 @@ def _weighted_line(values, project, whiten, inverse, determinants):
     scatter = max(white @ white - fit @ fit, np.finfo(float).tiny)
     left = len(values) - 2
     return (inverse @ fit)[1], scatter / left * (inverse[1] @ inverse[1]), -0.5 * left * math.log(scatter) - determinants
-
-
-# --- how a difference grows -----------------------------------------------------------------------
-@dataclass(frozen=True)
-class Growth:
-    """A difference that grows as level · t^power · exp(rate t) from ``begin`` to ``end``.
-
-    ``rate`` with its standard error (jackknife over ten blocks of time); the power describes the sum of local errors,
-    before the difference grows by itself.
-    """
-
-    rate: float
-    error: float
-    power: float
-    level: float
-    begin: float
-    end: float
-
-    @property
-    def lyapunov_time(self):
-        """Time in which the difference grows by e."""
-        return 1.0 / self.rate
-
-    @property
-    def lyapunov_error(self):
-        return self.error / self.rate**2
-
-    @property
-    def factor(self):
-        """The factor by which the exponential alone grew."""
-        return math.exp(self.rate * (self.end - self.begin))
-
-    def at(self, time):
-        return self.level * time**self.power * np.exp(self.rate * time)
-
-
-#: growth counts as exponential only above this factor, over at least this number of samples
-GROWTH, SAMPLES = 100.0, 20
-#: growth is steady only if no tenth of the time contributes more than this fraction of its logarithm
-STEADY = 0.4
-BLOCKS = 10
-#: differences below this fraction of the positions themselves are rounding
-ROUNDING = 1e-13
-
-
-def growth(time, difference, saturation, floor=0.0):
-    """(Growth, "") of where ``difference`` (n,) is exponential, or (None, why it is not).
-
-    The fit is to the logarithm of the running maximum, between ``floor`` and ``saturation``.
-    """
-    largest = np.maximum.accumulate(np.nan_to_num(difference, nan=np.inf))
-    kept = (largest > floor) & (largest < saturation) & (time > 0)
-    t, y = time[kept], np.log(largest[kept])
-    if len(t) < SAMPLES:
-        return None, f"fewer than {SAMPLES} samples between rounding and saturation"
-    level, power, rate = _fit_growth(t, y)
-    if rate * np.ptp(t) < math.log(GROWTH):
-        return None, "the difference grows no faster than a power of time, or by too little to tell"
-    tenths = np.diff(np.interp(np.linspace(t[0], t[-1], 11), t, y - power * np.log(t)))
-    if tenths.max() > STEADY * tenths.sum():
-        return None, "the difference grows in jumps"
-    parts = [np.arange(len(t)) * BLOCKS // len(t) != block for block in range(BLOCKS)]
-    rates = [_fit_growth(t[part], y[part])[2] for part in parts]
-    error = math.sqrt((BLOCKS - 1) * np.var(rates))
-    return Growth(rate, error, power, math.exp(level), float(t[0]), float(t[-1])), ""
-
-
-def _fit_growth(t, y):
-    """level, power >= 0, rate >= 0 of y = level + power ln t + rate t by least squares."""
-    columns = np.column_stack([np.ones(len(t)), np.log(t), t])
-    bounds = ([-np.inf, 0.0, 0.0], np.inf)
-    return lsq_linear(columns, y, bounds).x.tolist()

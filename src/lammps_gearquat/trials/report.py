@@ -244,40 +244,24 @@ def write_costs(folder, deck, costs):
     write_rows(folder / "trials.csv", header, rows)
 
 
-# --- horizon --------------------------------------------------------------------------------------
-def horizon_text(deck, horizon):
-    """The answer of ``gearquat horizon``."""
+# --- until ----------------------------------------------------------------------------------------
+def parting_text(deck, found):
+    """The answer of ``gearquat cost --until``."""
     time, length = deck.time_unit, deck.length_unit
     lines = [*_scene(deck), "Two runs of it were compared:"]
-    for trial in horizon.trials:
+    for trial in found.trials:
         name = "as it is" if trial.keywords is None else "gear/quat " + trial.label
         lines.append(f"    {name}, timestep {trial.dt:g}")
-    lines += [f"Note: {note}" for note in horizon.notes]
+    lines += [f"Note: {note}" for note in found.notes]
     lines.append("The centers of mass of a body in the two runs are further apart than")
-    last = _quantity(float(horizon.time[-1]), time, 6)
-    for level, parted in horizon.parting:
+    last = _quantity(float(found.time[-1]), time, 6)
+    for level, parted in found.times:
         when = f"from t = {_quantity(parted, time, 6)}" if math.isfinite(parted) else f"not before t = {last}"
         lines.append(f"    {_quantity(level, length):>8s}  {when}")
-    growth = horizon.growth
-    if growth is None:
-        lines.append(f"No Lyapunov time can be given: {horizon.no_growth}.")
-    else:
-        lyapunov = with_error(growth.lyapunov_time, growth.lyapunov_error, time)
-        lines.append(
-            f"The Lyapunov time, in which the difference grows by a factor of e, is {lyapunov}. It was fitted from"
-            f" t = {growth.begin:g} to {growth.end:g}, where the exponential grows by a factor of"
-            f" {rounded(growth.factor, 1)}."
-        )
     return "\n".join(lines)
 
 
-def write_horizon(folder, horizon):
-    """horizon.csv: the differences in time; parting.csv: when they pass each threshold; growth.csv: the Lyapunov time, or
-    why there is none."""
+def write_parting(folder, found):
+    """until.csv: the differences of the two runs in time."""
     header = ["time", "largest_position", "rms_position", "largest_orientation"]
-    rows = zip(horizon.time, horizon.largest, horizon.rms, horizon.angle)
-    write_rows(folder / "horizon.csv", header, rows)
-    write_rows(folder / "parting.csv", ["threshold", "time"], horizon.parting)
-    found = horizon.growth
-    row = [found.lyapunov_time, found.lyapunov_error, found.begin, found.end, ""] if found else [""] * 4 + [horizon.no_growth]
-    write_rows(folder / "growth.csv", ["lyapunov_time", "standard_error", "begin", "end", "why_none"], [row])
+    write_rows(folder / "until.csv", header, zip(found.time, found.largest, found.rms, found.angle))

@@ -208,17 +208,6 @@ class FixLine:
         kept = self.only(*_PHYSICAL)
         return replace(kept, keywords=(("tolerance", (f"{eps:.2g}", "length")), *kept.keywords))
 
-    def numerics(self, text):
-        """The keywords about integration of this line as text, updated by the keywords in ``text``.
-
-        A change of formulation drops the keywords that do not suit the new one.
-        """
-        own, new = dict(self.only("integration").keywords), dict(pairs(text))
-        (formulation,) = new.get("formulation", ("",))
-        if formulation and new["formulation"] != own.get("formulation"):
-            own = {key: own[key] for key in own if keywords.table()[key].suits(formulation)}
-        return " ".join(f"{key} {values[0]}" for key, values in (own | new).items())
-
 
 def conserved(lines, partial=False):
     """Energies while these FixLines move the bodies, as formulas of LAMMPS: (conserved, kinetic, commands before them).
