@@ -513,7 +513,7 @@ def test_deck_as_it_is_against_an_accurate_one(make_deck):
         with pytest.raises(DeckError, match="shorter than a step"):
             until.measure(deck, cost.Budget(30.0), [1e-6], time=1e-4)
         deck.start.steps = 10**9
-        reached = until.measure(deck, cost.Budget(3.0), [1e-6])
+        reached = until.measure(deck, cost.Budget(6.0), [1e-6])
     assert "as it is" in text and "1e-06 σ  from t =" in text and "1e+09 σ  not before t = 1" in text
     (level, parted), (_, never) = found.times
     assert math.isinf(never) and 0 < parted < 1.0

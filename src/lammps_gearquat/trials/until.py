@@ -12,6 +12,8 @@ from .cost import Inquiry, warnings_of
 from .script import DeckError
 
 SAMPLES = 500
+#: the part of the rest of the budget that both runs may take
+SHARE = 0.7
 
 
 @dataclass
@@ -48,8 +50,12 @@ def measure(deck, budget, distances, time=None):
     inquiry, notes = Inquiry(deck, budget), list(deck.notes)
     inquiry.probe()
     if time is None:
+        steps = min(max(int(0.2 / inquiry.pace[None]), 1), deck.start.steps)
+        if inquiry.attempt(deck.accurate, steps * deck.dt / 2, steps) is None:
+            raise inquiry.refusal("fix gear/quat cannot run this deck", deck.accurate)
         # the second run has twice as many steps
-        time = min(deck.end, budget.left() * deck.dt / (3.0 * inquiry.pace[None]))
+        seconds = inquiry.pace[None] + 2 * inquiry.pace[deck.accurate]
+        time = min(deck.end, SHARE * budget.left() * deck.dt / seconds)
         if time < deck.end:
             notes.append(f"the runs end at t = {rounded(time)}, not at {deck.end:g}, to stay within the budget; --time sets another end")
     stride = max(round(time / SAMPLES / deck.dt), 1)
