@@ -62,7 +62,6 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   create_attribute = 1;
   restart_global = restart_peratom = restart_file = 1;
 
-  add_citations(lmp, args);
   ecouple_flag = args.thermostat.damp > 0.0 || args.pressure.any();
   constexpr int CHANGES[] = {BOX_CHANGE_X,  BOX_CHANGE_Y,  BOX_CHANGE_Z,
                              BOX_CHANGE_YZ, BOX_CHANGE_XZ, BOX_CHANGE_XY};
@@ -146,6 +145,7 @@ void FixGearQuat::init()
   other_fixes.init();
   if (!step.had_run()) {
     stated = read_stated(lmp, args.mol);
+    other_fixes.warn_of_noise();
     warn_of_partial_molecules(lmp, this, fleet, ownership);
   }
   step.init();
@@ -420,8 +420,9 @@ bigint FixGearQuat::dof(int tgroup)
 
 int FixGearQuat::modify_param(int narg, char **arg)
 {
-  if (strcmp(arg[0], "extra/dof") != 0) return modify_like_rigid(lmp, narg, arg);
-  if (narg < 2) utils::missing_cmd_args(FLERR, "fix_modify extra/dof", error);
+  if (narg < 2) return 0;
+  if (strcmp(arg[0], "bodyforces") == 0 && strcmp(arg[1], "late") == 0) return 2;    // as always
+  if (strcmp(arg[0], "extra/dof") != 0) return 0;
   args.thermostat.subtracted = utils::inumeric(FLERR, arg[1], false, lmp);
   if (args.thermostat.subtracted < 0 || !ecouple_flag)
     error->all(

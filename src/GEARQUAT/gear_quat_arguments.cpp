@@ -191,8 +191,8 @@ void Arguments::check_ranges()
     const bool is_stated = given.count(row.name) && !given.at(row.name).is("auto");
     if (is_stated) value = given.at(row.name);
     row.store(*this, value);
-    if (row.may_be_auto) automatic_values = !is_stated && !is_on("tolerance", "");
-    if (row.may_be_auto && !is_stated) continue;
+    if (row.may_be_auto()) automatic_values = !is_stated && !is_on("tolerance", "");
+    if (row.may_be_auto() && !is_stated) continue;
     if (value.integer < range.fewest || value.integer > range.most)
       error->all(FLERR, "Fix gear/quat {}: {} is not from {} to {}{}", row.name, value.text,
                  range.fewest, range.most,
@@ -212,20 +212,17 @@ void Arguments::check_control()
   if (control.longest > 0.0 && control.shortest > control.longest)
     error->all(FLERR, "Fix gear/quat dtmin: {} is larger than dtmax, {}", control.shortest,
                control.longest);
-  if (thermostat.start != thermostat.stop)
-    error->all(
-        FLERR,
-        "Fix gear/quat temp: Tstart {} and Tstop {} differ, which cannot be used with tolerance: "
-        "the target depends on the number of the step, but steps differ in length; use several "
-        "runs, each with a constant target",
-        thermostat.start, thermostat.stop);
-  for (int k = 0; k < PressureWords::COMPONENTS; ++k)
-    if (pressure.on[k] && pressure.start[k] != pressure.stop[k])
+  const auto refuse_ramp = [this](char quantity, double start, double stop) {
+    if (start != stop)
       error->all(FLERR,
-                 "Fix gear/quat: Pstart {} and Pstop {} differ, which cannot be used with "
+                 "Fix gear/quat: {0}start {1} and {0}stop {2} differ, which cannot be used with "
                  "tolerance: the target depends on the number of the step, but steps differ in "
                  "length; use several runs, each with a constant target",
-                 pressure.start[k], pressure.stop[k]);
+                 quantity, start, stop);
+  };
+  refuse_ramp('T', thermostat.start, thermostat.stop);
+  for (int k = 0; k < PressureWords::COMPONENTS; ++k)
+    if (pressure.on[k]) refuse_ramp('P', pressure.start[k], pressure.stop[k]);
 }
 
 void Arguments::check_random()
@@ -466,46 +463,27 @@ std::vector<tagint> Arguments::custom_ids(const Selection &selection) const
    bodies to masks
 ------------------------------------------------------------------------- */
 
-/// Parses n, *, *n, n* or m*n with 1 <= m <= n <= number; false for any other text.
-static bool parse_range(const std::string &text, tagint number, tagint &first, tagint &last)
-{
-  const size_t star = text.find('*');
-  const std::string left = text.substr(0, star);
-  const std::string right = star == std::string::npos ? left : text.substr(star + 1);
-  for (const auto &part : {left, right})
-    if (part.find_first_not_of("0123456789") != std::string::npos || part.size() > 18) return false;
-  if (star == std::string::npos && left.empty()) return false;
-  const bigint from = left.empty() ? 1 : std::atoll(left.c_str());
-  const bigint to = right.empty() ? number : std::atoll(right.c_str());
-  if (from < 1 || from > to || to > number) return false;
-  first = (tagint) from;
-  last = (tagint) to;
-  return true;
-}
-
 std::map<tagint, Mask> Arguments::masks_of(const std::vector<tagint> &ids) const
 {
   std::map<tagint, Mask> off;
   for (const auto &one : masks) {
-    const char *key = one.torque ? "torque" : "force";
-    tagint first, last;
-    if (!parse_range(one.range, (tagint) ids.size(), first, last))
+    const bool torque = one.stated & torque_off(0);
+    const char *key = torque ? "torque" : "force";
+    const auto number = (bigint) ids.size();
+    bigint first, last;    // without an Error the function has no message of its own
+    utils::bounds(FLERR, one.range, 1, number, first, last, nullptr);
+    if (first < 1 || first > last || last > number)
       error->all(FLERR,
                  "Fix gear/quat {}: bodies {} are neither a number from 1 to {} nor a range of "
                  "them with an asterisk",
                  key, one.range, ids.size());
-    if (domain->dimension == 2 && (one.torque ? one.on[0] || one.on[1] : one.on[2]))
+    const Mask out_of_plane = torque ? torque_off(0) | torque_off(1) : force_off(2);
+    if (domain->dimension == 2 && (one.off & out_of_plane) != out_of_plane)
       error->all(FLERR, "Fix gear/quat {}: the {} has to be off in a 2d simulation", key,
-                 one.torque ? "torque about x and y" : "force along z");
-    Mask bits = 0, wanted = 0;
-    for (int k = 0; k < 3; ++k) {
-      const Mask bit = one.torque ? torque_off(k) : force_off(k);
-      bits |= bit;
-      if (!one.on[k]) wanted |= bit;
-    }
-    for (tagint m = first; m <= last; ++m) {
+                 torque ? "torque about x and y" : "force along z");
+    for (bigint m = first; m <= last; ++m) {
       Mask &mask = off[ids[m - 1]];
-      mask = (mask & ~bits) | wanted;
+      mask = (mask & ~one.stated) | one.off;
     }
   }
   for (auto it = off.begin(); it != off.end();) it = it->second ? std::next(it) : off.erase(it);

@@ -31,9 +31,8 @@ struct Arguments;
 
 /// Keyword force or torque with its words: the components that act, and the bodies.
 struct MaskWords {
-  bool torque;          ///< or force
   std::string range;    ///< of bodies, counted from 1 in the order of their IDs
-  bool on[3];
+  Mask stated, off;     ///< all components of the force or of the torque; those that do not act
 };
 
 /// The words after a keyword, parsed.
@@ -75,8 +74,9 @@ struct Keyword {
   std::vector<Range> ranges = {};    ///< INTEGER: one, or two, the second for formulation first
   std::vector<Standard> standards = {};    ///< WORD: other defaults, the first that applies counts
   int any_sign = 0;
-  bool may_be_auto = false;    ///< INTEGER: the word auto is possible, and the default
 
+  /// With a range for each formulation the word auto is possible, and the default.
+  bool may_be_auto() const { return ranges.size() > 1; }
   /// The range for a formulation, if there are two ranges.
   const Range &range(bool first) const { return ranges[first ? ranges.size() - 1 : 0]; }
 
@@ -112,9 +112,8 @@ const std::vector<Keyword> &keyword_table();
 /// All rules, in the order in which they are checked.
 const std::vector<Rule> &keyword_rules();
 
-/// The row of a keyword.  An unknown keyword ends the run on all ranks.  The message gives the
-/// equivalent of a keyword of the rigid fixes, otherwise the words allowed after the previous
-/// keyword, `before`.
+/// The row of a keyword.  An unknown keyword ends the run on all ranks; the message gives the words
+/// allowed after the previous keyword, `before`.
 const Keyword &find_keyword(LAMMPS *lmp, const std::string &name, const Keyword *before = nullptr);
 
 /// Returns true if `text` is an integer, and stores its value in `integer`.
@@ -126,10 +125,6 @@ std::string alternatives(const std::vector<std::string> &words);
 /// The tables as text: a line of titles and a line for each keyword, whose columns are separated by
 /// two or more blanks; an empty cell is a hyphen.
 std::string list_of_keywords();
-
-/// Handles the words of fix_modify that the rigid fixes have and returns how many were used.  Ends
-/// the run on all ranks if this fix does not support the request.
-int modify_like_rigid(LAMMPS *lmp, int narg, char **arg);
 
 /* ---------------------------------------------------------------------- */
 

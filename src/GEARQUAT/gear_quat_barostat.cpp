@@ -54,16 +54,16 @@ static constexpr int PLACES[] = {0, 1, 2, 5, 4, 3};
 Barostat::Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sites,
                    const PressureWords &pressure, Temperature &temperature) :
     Pointers(lmp),
-    fix(fix), bodies(bodies), sites(sites), asked(pressure), is_asked(asked.any()),
-    temperature(temperature), box(lmp, pressure.fixed)
+    fix(fix), bodies(bodies), sites(sites), asked(pressure), temperature(temperature),
+    box(lmp, pressure.fixed)
 {
-  if (moves()) virial.emplace(lmp, fix, sites);
+  if (asked.any()) virial.emplace(lmp, fix, sites);
 }
 
 void Barostat::set_scheme(const Scheme &scheme)
 {
   if (!moves()) return;
-  changing_step = scheme.remembers();
+  if (scheme.remembers() && !times) times.emplace(false);
   cell.set_scheme(scheme);
   fastest = fastest_oscillation(CellHistory::scheme_of(scheme));
 }
@@ -235,9 +235,9 @@ void Barostat::show(const Upper &deformation, const Upper &its_rate)
 
 void Barostat::predict(double h)
 {
-  if (changing_step) {
-    times.prepare(h);
-    cell.set_coefficients(times.coefficients());
+  if (times) {
+    times->prepare(h);
+    cell.set_coefficients(times->coefficients());
   }
   cell.predict();
   refuse_box(cell.matrix());
@@ -246,8 +246,7 @@ void Barostat::predict(double h)
 
 void Barostat::choose_coefficients(CorrectorCoefficients::Array &c, int values) const
 {
-  for (int j = 0; changing_step && j < values; ++j)
-    c[j] = 0.5 * (j + 1) * times.coefficients().c[j + 1];
+  for (int j = 0; times && j < values; ++j) c[j] = 0.5 * (j + 1) * times->coefficients().c[j + 1];
 }
 
 /// The scale of energies is that of a body's exact sum.
@@ -545,7 +544,7 @@ void Barostat::seed_local(double h, int terms, double xi)
   const Upper second = begin_acceleration(xi), &matrix = box.matrix();
   const Upper series[3] = {matrix, (rate * matrix).scaled(h), second.scaled(0.5 * h * h)};
   cell.seed(series[0].m.data(), terms, h, h);
-  times.begin(SECOND_PAPER - 2, FORMER_STEPS * std::fabs(h));
+  if (times) times->begin(SECOND_PAPER - 2, FORMER_STEPS * std::fabs(h));
 }
 
 /* ----------------------------------------------------------------------
@@ -566,7 +565,7 @@ double Barostat::longest_step() const
 void Barostat::note_step(double h)
 {
   if (!moves()) return;
-  times.conclude(h);
+  if (times) times->conclude(h);
   const Upper push = drive(), mass = masses();
   const double fades = std::exp(-std::fabs(h) / (MEMORY * period()));
   const bool is_known = last_drive.contracted(last_drive) > 0.0;
@@ -613,7 +612,7 @@ void Barostat::refuse_box(const Upper &matrix) const
 void Barostat::fields(Fields &v)
 {
   v(width, made, correction, *virial, box, cell, last_drive, against, along);
-  if (changing_step) v(times);
+  if (times) v(*times);
   if (!v.reads()) return;
   present = made;
   note_rates(width);

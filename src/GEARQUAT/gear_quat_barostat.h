@@ -109,7 +109,7 @@ class Barostat : protected Pointers {
   Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sites,
            const PressureWords &pressure, Temperature &temperature);
 
-  bool moves() const { return is_asked; }
+  bool moves() const { return virial.has_value(); }
   void set_scheme(const Scheme &scheme);
 
   // before a run
@@ -220,14 +220,12 @@ class Barostat : protected Pointers {
   Bodies &bodies;
   const Sites &sites;
   PressureWords asked;
-  const bool is_asked;
   Temperature &temperature;
   std::optional<MolecularVirial> virial;    ///< of a box that moves
   Box box;
   CellHistory cell, kept;
-  RememberedLoads times{false};    ///< with a changing step: of the last drives of the box
-  bool changing_step = false;      ///< keyword tolerance
-  double width = 0.0;              ///< the step of the histories
+  std::optional<RememberedLoads> times;    ///< with a changing step: of the last drives of the box
+  double width = 0.0;                      ///< the step of the histories
   struct Setting {
     Upper target;         ///< pressures
     Upper target_rate;    ///< change of these targets with time

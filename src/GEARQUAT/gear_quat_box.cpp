@@ -265,23 +265,6 @@ void DrivenBox::init()
    atoms are remapped with the box
 ------------------------------------------------------------------------- */
 
-/// A barostat with too short a damping time even turns the box inside out.
-void DrivenBox::refuse_jump() const
-{
-  constexpr double JUMP = 0.05;    // of an edge in a step
-  for (int k = 0; k < 3; ++k) {
-    const double ratio = domain->h[k] / ownership.box()[k];
-    if (std::fabs(ratio - 1.0) < JUMP) continue;
-    for (const auto *other : modify->get_fix_list())
-      if (other != fix && changes_box(other) && !utils::strmatch(other->style, "^deform"))
-        error->all(FLERR,
-                   "Fix gear/quat: fix {} ({}) has changed the length of the box along {} by a "
-                   "factor of {:.3g} in step {}; give it a much longer Pdamp, or fix "
-                   "press/berendsen a larger modulus",
-                   other->id, other->style, "xyz"[k], ratio, update -> ntimestep);
-  }
-}
-
 void DrivenBox::begin_remap()
 {
   ownership.note_box();
@@ -289,7 +272,6 @@ void DrivenBox::begin_remap()
 
 void DrivenBox::end_remap()
 {
-  refuse_jump();
   const double *before = ownership.box().data();
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
     const double *center = bodies.state_of(ibody).center;

@@ -177,7 +177,6 @@ class DrivenBox : protected Pointers {
   const Fix *driver = nullptr;    ///< a fix that changes the box in this run
 
   void pass_faces(int ibody, const double *images);
-  void refuse_jump() const;
   void move_center(int ibody, const double *way);
   void place_sites();
 };

@@ -53,7 +53,7 @@ const std::vector<Keyword> &GearQuat::keyword_table()
     {"values", INTEGRATION, K::INTEGER, {},
      [](A &a, const V &v) { a.scheme.rows = v.integer; },
      "how many values a history keeps of each function",
-     {{SECOND_FEWEST, SECOND_MOST, 9, 8}, {FIRST_FEWEST, FIRST_MOST, 8, 6}}, {}, 0, true},
+     {{SECOND_FEWEST, SECOND_MOST, 9, 8}, {FIRST_FEWEST, FIRST_MOST, 8, 6}}},
     {"corrector", INTEGRATION, K::WORD, {"tuned", "gear"},
      [](A &a, const V &v) { a.scheme.method = v.is("tuned") ? Method::TUNED : Method::GEAR; },
      "which coefficients correct a history", {},
@@ -220,55 +220,6 @@ const std::vector<Rule> &GearQuat::keyword_rules()
 // clang-format on
 
 /* ----------------------------------------------------------------------
-   words of the rigid fixes
-------------------------------------------------------------------------- */
-
-static constexpr char SCALED_TILT[] = "the tilts xy and xz scale with the edge along x, and yz "
-                                      "with the edge along y; leave it out";
-
-/// doc/howto/from_rigid.md has the same table.
-static const std::vector<std::pair<std::vector<std::string>, const char *>> RIGID_WORDS = {
-    {{"tparam"}, "a thermostat is integrated with the bodies, without iterations; leave it out"},
-    {{"pparam"}, "a barostat is integrated with the bodies, without iterations; leave it out"},
-    {{"scalexy", "scalexz", "scaleyz"}, SCALED_TILT},
-    {{"drag"}, "the equations of motion of the box have no drag; use a longer Pdamp instead"},
-    {{"mtk"}, "its terms always belong to the equations of motion; leave it out"},
-    {{"nreset"}, "pressures refer to the present box, not to a reference cell; leave it out"},
-    {{"tloop", "ploop"}, "chains choose their own sub-steps; leave it out"},
-    {{"update"}, "rotations are always integrated; leave it out"},
-    {{"gravity"},
-     "keep fix gravity, on a group with the bodies, and leave out its keyword disable"},
-    {{"bodyforces"}, "forces are always summed late, in the end of the step"},
-};
-
-/// The alternative to a keyword of fix rigid and its variants; empty for any other word.
-static std::string instead_of_rigid_keyword(const std::string &keyword)
-{
-  for (const auto &[keywords, instead] : RIGID_WORDS)
-    if (std::count(keywords.begin(), keywords.end(), keyword)) return instead;
-  return "";
-}
-
-int GearQuat::modify_like_rigid(LAMMPS *lmp, int narg, char **arg)
-{
-  const std::string word = arg[0];
-  if (word == "temp" || word == "press")
-    lmp->error->all(FLERR,
-                    "Fix gear/quat has no fix_modify {}: it uses the {} of the bodies, which its "
-                    "vector shows",
-                    word, word == "temp" ? "temperatures" : "molecular pressure");
-  if (word != "bodyforces") return 0;
-  if (narg < 2) utils::missing_cmd_args(FLERR, "fix_modify bodyforces", lmp->error);
-  const std::string when = arg[1];
-  if (when != "late")
-    lmp->error->all(FLERR,
-                    "Fix gear/quat has no fix_modify bodyforces {}: {}; define fixes whose forces "
-                    "bodies should not feel on a group without them",
-                    when, instead_of_rigid_keyword(word));
-  return 2;
-}
-
-/* ----------------------------------------------------------------------
    rows of the table
 ------------------------------------------------------------------------- */
 
@@ -281,9 +232,6 @@ const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name, cons
 {
   for (const auto &row : keyword_table())
     if (row.name == name) return row;
-  const std::string instead = instead_of_rigid_keyword(name);
-  if (!instead.empty())
-    lmp->error->all(FLERR, "Fix gear/quat has no keyword {} of the rigid fixes: {}", name, instead);
   std::vector<std::string> names;
   for (const auto &row : keyword_table()) names.emplace_back(row.name);
   const std::string values = before ? fmt::format("; {} takes {}", before->name, before->required())
@@ -314,7 +262,7 @@ std::string Keyword::required() const
         ? "a positive number"
         : "a positive number and perhaps " + alternatives(words) + " and perhaps its unit";
   if (kind == INTEGER)
-    return (may_be_auto ? "auto or " : "") + of_formulations(*this, [](const Range &range) {
+    return (may_be_auto() ? "auto or " : "") + of_formulations(*this, [](const Range &range) {
              return fmt::format("{} to {}", range.fewest, range.most);
            });
   return kind == WORD ? alternatives(words) : utils::join_words(words, " ");
@@ -354,7 +302,7 @@ int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
 
   if (kind == WORD && !std::count(words.begin(), words.end(), value.text))
     error->all(FLERR, "Fix gear/quat {}: unknown value {} ({})", name, value.text, required());
-  if (kind == INTEGER && !(may_be_auto && value.is("auto")) &&
+  if (kind == INTEGER && !(may_be_auto() && value.is("auto")) &&
       !read_integer(value.text, value.integer))
     error->all(FLERR, "Fix gear/quat {}: {} is not an integer; required: {}", name, value.text,
                required());
@@ -377,12 +325,14 @@ int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
                    k < any_sign ? "" : "positive ");
   }
   if (kind == MASK) {
-    value.mask = {std::string("torque") == name, value.text, {}};
+    value.mask = {value.text, 0, 0};
     for (int k = 0; k < 3; ++k) {
+      const Mask component = std::string("torque") == name ? torque_off(k) : force_off(k);
       const std::string flag = arg[2 + k];
       if (flag != "on" && flag != "off")
         error->all(FLERR, "Fix gear/quat {}: unknown {} {} (on or off)", name, words[1 + k], flag);
-      value.mask.on[k] = flag == "on";
+      value.mask.stated |= component;
+      if (flag == "off") value.mask.off |= component;
     }
   }
   return count;
@@ -403,7 +353,7 @@ std::string default_cell(const Keyword &row)
                           other.value, other.word);
     return cell;
   }
-  return row.may_be_auto ? "auto" : of_formulations(row, [&row](const Keyword::Range &range) {
+  return row.may_be_auto() ? "auto" : of_formulations(row, [&row](const Keyword::Range &range) {
     return std::to_string(row.standard_of(range, false));
   });
 }

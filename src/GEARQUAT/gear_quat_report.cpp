@@ -11,7 +11,6 @@
 #include "gear_quat_styles.h"
 
 #include "atom.h"
-#include "citeme.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -123,67 +122,6 @@ void GearQuat::warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Flee
                         "complete the bodies and their groups before this fix, as by \"group {} "
                         "include molecule\"",
                         example, lmp->group->names[fix->igroup]);
-}
-
-/* ----------------------------------------------------------------------
-   papers to cite; LAMMPS shows the first line of each
-------------------------------------------------------------------------- */
-
-void GearQuat::add_citations(LAMMPS *lmp, const Arguments &args)
-{
-  if (!lmp->citeme) return;
-  const auto cite = [lmp](bool used, const std::string &what, const std::string &paper) {
-    if (used) lmp->citeme->add("fix gear/quat" + what + "\n\n@" + paper + "\n}\n\n");
-  };
-  cite(args.scheme.remembers(), " tolerance: method of Adams with variable step and order",
-       "Book{Shampine1975,\n author = {L. F. Shampine and M. K. Gordon},\n"
-       " title = {Computer Solution of Ordinary Differential Equations: The Initial Value "
-       "Problem},\n"
-       " publisher = {Freeman},\n year = 1975");
-  cite(!args.scheme.remembers(), ": predictor-corrector method",
-       "Book{Gear1971,\n author = {C. William Gear},\n"
-       " title = {Numerical Initial Value Problems in Ordinary Differential Equations},\n"
-       " publisher = {Prentice-Hall},\n year = 1971");
-  cite(args.scheme.first(),
-       ": quaternions in the equations of motion, first-order form: "
-       "https://doi.org/10.1080/00268977700101751",
-       "Article{Evans1977,\n author = {Denis J. Evans},\n"
-       " title = {On the Representation of Orientation Space},\n"
-       " journal = {Molecular Physics},\n year = 1977,\n volume = 34,\n pages = {317--325}");
-  cite(args.scheme.formulation == Formulation::SECOND,
-       ": quaternions in the equations of motion, second-order form: "
-       "https://doi.org/10.1016/0021-9991(85)90009-9",
-       "Article{Rapaport1985,\n author = {Dennis C. Rapaport},\n"
-       " title = {Molecular Dynamics Simulation Using Quaternions},\n"
-       " journal = {Journal of Computational Physics},\n year = 1985,\n volume = 60,\n"
-       " pages = {306--314}");
-  cite(args.isokinetic != Isokinetic::NONE,
-       " isokinetic: constant kinetic energy by Gauss' principle: "
-       "https://doi.org/10.1103/PhysRevA.28.1016",
-       "Article{EvansGauss1983,\n author = {Denis J. Evans and William G. Hoover and Bruce H. "
-       "Failor and Bill Moran and Anthony J. C. Ladd},\n"
-       " title = {Nonequilibrium Molecular Dynamics via {Gauss's} Principle of Least Constraint},\n"
-       " journal = {Physical Review A},\n year = 1983,\n volume = 28,\n pages = {1016--1021}");
-  cite(args.thermostat.is_random(),
-       " langevin: Langevin dynamics of rigid bodies: https://doi.org/10.1063/1.4916312",
-       "Article{Davidchack2015,\n author = {R. L. Davidchack and T. E. Ouldridge and M. V. "
-       "Tretyakov},\n"
-       " title = {New {Langevin} and gradient thermostats for rigid body dynamics},\n"
-       " journal = {Journal of Chemical Physics},\n year = 2015,\n volume = 142,\n"
-       " pages = {144114}");
-  cite(args.thermostat.damp > 0.0 && !args.thermostat.is_random(),
-       " temp: chains of thermostats: https://doi.org/10.1063/1.463940",
-       "Article{Martyna1992,\n author = {Glenn J. Martyna and Michael L. Klein and Mark "
-       "Tuckerman},\n"
-       " title = {{Nos\\'e--Hoover} Chains: The Canonical Ensemble via Continuous Dynamics},\n"
-       " journal = {Journal of Chemical Physics},\n year = 1992,\n volume = 97,\n"
-       " pages = {2635--2643}");
-  cite(args.pressure.any(),
-       " iso, aniso, x, y and z: constant pressure: https://doi.org/10.1063/1.467468",
-       "Article{Martyna1994,\n author = {Glenn J. Martyna and Douglas J. Tobias and Michael L. "
-       "Klein},\n title = {Constant Pressure Molecular Dynamics Algorithms},\n"
-       " journal = {Journal of Chemical Physics},\n year = 1994,\n volume = 101,\n"
-       " pages = {4177--4189}");
 }
 
 /* ----------------------------------------------------------------------

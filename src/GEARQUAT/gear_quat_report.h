@@ -3,8 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Before a run: what is refused, probable mistakes of which rank 0 warns, papers to cite, and the
-   report about the simulation: what is on, what is off and why, and which pairs of atoms cost time
+/* Before a run: what is refused, probable mistakes of which rank 0 warns, and the report about the simulation: what is on, what is off and why, and which pairs of atoms cost time
    and move nothing.  All are collective. */
 
 #ifndef LMP_GEAR_QUAT_REPORT_H
@@ -22,9 +21,6 @@ class Ownership;
 class Sites;
 struct Arguments;
 struct Fleet;
-
-/// The papers to cite, for the fix and for each feature in use.
-void add_citations(LAMMPS *lmp, const Arguments &args);
 
 /// Ends the run on all ranks with a reason: a time step of zero, r-RESPA with different steps, or
 /// atoms that another fix moves too.

@@ -499,7 +499,6 @@ const char *Step::another_scheme_suits() const
 void Step::begin(int vflag, double **f)
 {
   vflag_of_step = vflag;
-  others.watch_velocities(phase == Phase::BETWEEN);    // in a run with `pre no` of all sites
   if (tolerance) tolerance->begin_step();
   if (tolerance) bath.keep();
   bath.take_random_half(*integrator, 0);

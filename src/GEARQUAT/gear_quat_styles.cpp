@@ -271,8 +271,6 @@ void OtherFixes::init()
 {
   taken.clear();
   watched.clear();
-  warned_change = false;
-  warn_of_noise();
   for (auto *other : modify->get_fix_list()) {
     const Style *row = known(Fact::ON_ATOMS, other);
     const bool heats = args.thermostat.damp > 0.0 && other->ecouple_flag && !other->time_integrate;
@@ -315,13 +313,12 @@ void OtherFixes::refuse(Fix *other, const Style &row, tagint atom) const
              other->id, other->style, atom, row.instead);
 }
 
-void OtherFixes::warn_of_noise()
+void OtherFixes::warn_of_noise() const
 {
-  if (warned_noise || args.control.eps > 0.0) return;
+  if (args.control.eps > 0.0) return;
   const NoisyForces found = noise_of_forces(lmp, ownership);
   const bool first = args.scheme.first() && found.noise == Noise::RANDOM;
   if (!first && (args.automatic_values || suits_noise(args.scheme, found.noise))) return;
-  warned_noise = true;
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat: {}, and {} cannot follow them; leave out keywords {}values and "
@@ -425,46 +422,16 @@ std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
    changes that bodies do not follow
 ------------------------------------------------------------------------- */
 
-void OtherFixes::watch_velocities(bool all)
+void OtherFixes::watch_places() const
 {
-  if (++sample >= sites.number()) sample = 0;
-  const Site *const first = sites.begin() + (all ? 0 : sample);
-  for (const Site *site = first; site < sites.end() && !warned_change; ++site) {
-    if (all && !sites.is_there(*site))
-      warn(*site, "place");
-    else if (!sites.is_as_fast(*site))
-      warn(*site, "velocity");
-    if (!all) break;
-  }
-}
-
-void OtherFixes::watch_places()
-{
-  if (!watched.empty()) {
-    for (const Site &site : sites)
-      if (!sites.is_there(site))
-        error->one(FLERR,
-                   "Fix gear/quat: {} has moved atom {} of body {} in step {}, and bodies do not "
-                   "follow; {}",
-                   names(watched), atom->tag[site.atom], bodies.body_at(site.body).id,
-                   update->ntimestep, known(Fact::ON_ATOMS, watched.front())->instead);
-    return;
-  }
-  if (warned_change || sample >= sites.number()) return;
-  if (!sites.is_there(sites[sample])) warn(sites[sample], "place");
-}
-
-void OtherFixes::warn(const Site &site, const char *what)
-{
-  warned_change = true;
-  std::vector<const Fix *> others;
-  for (const auto *other : modify->get_fix_list())
-    if (other != fix) others.push_back(other);
-  error->warning(FLERR,
-                 "Fix gear/quat: the {} of atom {} of body {} was changed before step {} by "
-                 "something else, and bodies do not follow; other fixes are: {}",
-                 what, atom->tag[site.atom], bodies.body_at(site.body).id, update->ntimestep,
-                 others.empty() ? "none" : names(others));
+  if (watched.empty()) return;
+  for (const Site &site : sites)
+    if (!sites.is_there(site))
+      error->one(FLERR,
+                 "Fix gear/quat: {} has moved atom {} of body {} in step {}, and bodies do not "
+                 "follow; {}",
+                 names(watched), atom->tag[site.atom], bodies.body_at(site.body).id,
+                 update->ntimestep, known(Fact::ON_ATOMS, watched.front())->instead);
 }
 
 std::string OtherFixes::names(const std::vector<const Fix *> &fixes) const

@@ -8,9 +8,8 @@
 
    Other fixes that change velocities, positions or masses of the atoms of bodies: depending on the
    effect, bodies adopt the change, the run ends when the change occurs, or the run does not begin.
-   Effects of styles that no row lists are detected by samples.  The fix calls init() before every
-   run; take_velocities() before a step, with the velocities left by the previous step;
-   watch_places() after the forces, with the predicted positions. */
+   The fix calls init() before every run; take_velocities() before a step, with the velocities left
+   by the previous step; watch_places() after the forces, with the predicted positions. */
 
 #ifndef LMP_GEAR_QUAT_STYLES_H
 #define LMP_GEAR_QUAT_STYLES_H
@@ -119,6 +118,8 @@ class OtherFixes : protected Pointers {
 
   /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
   void init();
+  /// Rank 0 warns of forces that the number of values in the command cannot follow.  Collective.
+  void warn_of_noise() const;
   /// True if some fix may change velocities and bodies adopt the change.
   bool any_taken() const { return !taken.empty(); }
 
@@ -127,13 +128,9 @@ class OtherFixes : protected Pointers {
   /// the run if `end`, and is otherwise ignored.  Collective.
   std::vector<int> take_velocities(bigint step, bool end);
 
-  // These functions are local and test a single site, another one in each step, unless a fix is
-  // known to move atoms.
-
-  /// Before a step.  all: tests the positions and velocities of all sites.
-  void watch_velocities(bool all);
-  /// The forces have been evaluated.
-  void watch_places();
+  /// Ends the run if a fix that may move single atoms has moved one of a body; when the forces have
+  /// been evaluated.  Local.
+  void watch_places() const;
 
  private:
   const Fix *fix;
@@ -143,13 +140,8 @@ class OtherFixes : protected Pointers {
   const Arguments &args;
   std::vector<const Fix *> taken;      ///< bodies adopt velocities from these
   std::vector<const Fix *> watched;    ///< these may move single atoms
-  int sample = 0;                      ///< the site that is tested next
-  bool warned_noise = false;           ///< warned of random forces and the like
-  bool warned_change = false;          ///< warned of an unknown change in this run
 
-  void warn_of_noise();
   void refuse(Fix *other, const Style &row, tagint atom) const;
-  void warn(const Site &site, const char *what);
   std::string names(const std::vector<const Fix *> &fixes) const;
 };
 

@@ -42,7 +42,7 @@ Temperature::Temperature(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
     subtracted(words.subtracted), fix(fix), bodies(bodies), words(words),
     start(words.damp > 0.0 ? words.start : pressure.temperature),
     stop(words.damp > 0.0 ? words.stop : pressure.temperature), of_bodies(start == 0.0),
-    of_pressure(pressure.any())
+    components(pressure.any() ? Upper::SIZE : 0)
 {
 }
 
@@ -206,7 +206,7 @@ void Temperature::add(int ibody, const double *velocity, const double *omega_bod
   sums[TRANSLATION].add(2.0 * translational_energy(rigid, along), energies);
   if (!masked || has(ibody, ROTATION))
     sums[ROTATION].add(2.0 * rotational_energy(rigid, omega_body), energies);
-  for (int k = 0; of_pressure && k < Upper::SIZE; ++k)
+  for (int k = 0; k < components; ++k)
     sums[TENSOR + k].add(rigid.mass * along[Upper::ROW[k]] * along[Upper::COLUMN[k]], energies);
   for (int k = 0; k < 3; ++k)
     if (constant[k]) sums[MOMENTUM + k].add(rigid.mass * along[k], momenta);
@@ -336,20 +336,14 @@ void IsokineticConstraint::refuse_rest() const
     if (bodies.rigid_of(ibody).rotational_freedoms() > 0) turns = 1;
   turns = over_ranks(MPI_MAX, turns, world);
 
-  const bool separate = mode == Isokinetic::SEPARATE;
   const double least = NOTHING * (sums.translation + sums.rotation);
-  const char *missing = nullptr;
-  if (least <= 0.0)
-    missing = "";
-  else if (separate && sums.translation <= least)
-    missing = "translational ";
-  else if (separate && turns && sums.rotation <= least)
-    missing = "rotational ";
-  if (missing)
+  if (least <= 0.0 ||
+      (mode == Isokinetic::SEPARATE &&
+       (sums.translation <= least || (turns && sums.rotation <= least))))
     error->all(FLERR,
-               "Fix gear/quat isokinetic {}: the {}kinetic energy of the bodies is zero and would "
-               "stay so; give them velocities first",
-               separate ? "separate" : "total", missing);
+               "Fix gear/quat isokinetic: a kinetic energy of the bodies is zero and would stay so "
+               "(translation {:g}, rotation {:g}); give them velocities first",
+               0.5 * sums.translation * force->mvv2e, 0.5 * sums.rotation * force->mvv2e);
 }
 
 double IsokineticConstraint::end_passes()

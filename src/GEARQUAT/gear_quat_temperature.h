@@ -116,7 +116,7 @@ class Temperature : protected Pointers {
   const ThermostatWords &words;
   double start, stop;      ///< the target of a run
   const bool of_bodies;    ///< no keyword states a temperature
-  const bool of_pressure;
+  const int components;    ///< of the tensor: all with a pressure, otherwise none
 
   bool constant[3] = {}, stated = false;
   std::string outside;    ///< what exerts forces from outside, empty for nothing

@@ -38,10 +38,10 @@ REASONS = (
         "pressure with r-RESPA, or another order of fixes",
         r"run_style \*respa\* are refused with a pressure",
     ),
-    (r"keyword gravity of the rigid fixes", "keyword gravity", r"\*gravity\* and"),
-    (r"bodyforces early", "bodyforces early", r"\*Fix_modify bodyforces\* is always \*late\*"),
+    (r"Unknown fix gear/quat keyword: gravity", "keyword gravity", r"\*gravity\* and"),
+    (r"fix_modify bodyforces", "bodyforces early", r"\*Fix_modify bodyforces\* is always \*late\*"),
     (
-        r"has no fix_modify temp",
+        r"does not support fix_modify temp",
         "fix_modify temp",
         r"`fix_modify temp`, `press` \| not there",
     ),

@@ -125,8 +125,8 @@ ARGUMENTS = {
     "molecule thermostat total": "keyword thermostat requires keyword temp",
     "molecule temp 1 1 0.1 thermostat both": "thermostat: unknown value both (total or separate)",
     "molecule formulation first isokinetic total temp 1 1 0.1": "keyword temp cannot be used with isokinetic: both keep",
-    "molecule temp 1 2 0.1 tolerance 1e-8": "temp: Tstart 1 and Tstop 2 differ, which cannot be used with tolerance",
-    "molecule tparam 3 2 3": "no keyword tparam of the rigid fixes: a thermostat is integrated",
+    "molecule temp 1 2 0.1 tolerance 1e-8": "Tstart 1 and Tstop 2 differ, which cannot be used with tolerance",
+    "molecule tparam 3 2 3": "Unknown fix gear/quat keyword: tparam; the keywords are",
     "molecule iso": "iso: Pstart is missing; required: Pstart Pstop Pdamp",
     "molecule iso 1 1": "iso: Pdamp is missing; required: Pstart Pstop Pdamp",
     "molecule iso one 1 1": "iso: Pstart one is not a number",
@@ -164,12 +164,6 @@ ARGUMENTS = {
     "molecule formulation first isokinetic total z 1 1 1": "keyword z cannot be used with isokinetic: constant kinetic energy",
     "molecule iso 1 1 1 dilate solvent": "dilate: unknown value solvent (all)",
     "molecule dilate all": "keyword dilate requires keyword iso, aniso, tri",
-    "molecule iso 1 1 1 scalexy no": "no keyword scalexy of the rigid fixes: the tilts xy and xz scale",
-    "molecule iso 1 1 1 drag 0.1": "no keyword drag of the rigid fixes: the equations of motion of the box have no drag",
-    "molecule iso 1 1 1 mtk yes": "no keyword mtk of the rigid fixes: its terms always belong",
-    "molecule iso 1 1 1 nreset 100": "no keyword nreset of the rigid fixes: pressures refer to the present box",
-    "molecule iso 1 1 1 ploop 2": "no keyword ploop of the rigid fixes: chains choose",
-    "molecule iso 1 1 1 pparam 2": "no keyword pparam of the rigid fixes: a barostat is integrated",
     "single mol some": "keyword mol requires bodystyle molecule",
     "molecule formulation first isokinetic total mol some": "keyword mol cannot be used with isokinetic: inserted bodies add",
     "molecule formulation first isokinetic total force 1 on on off": "keyword force cannot be used",
@@ -364,7 +358,7 @@ PRESSURES = {
     "press/berendsen": ("molecule iso 1 1 1", "", "fix d all press/berendsen iso 1 1 1", "Must not have multiple fixes change box parameter x"),
     "fast": ("molecule iso 1 1 0.001", "", "", "Pdamp"),
     "far": ("molecule iso 1e9 1e9 1000", "", "", "begin nearer to the target pressure, or use a longer Pdamp"),
-    "fix_modify press": ("molecule iso 1 1 1", "", "fix_modify move press thermo_press", "has no fix_modify press: it uses the molecular pressure"),
+    "fix_modify press": ("molecule iso 1 1 1", "", "fix_modify move press thermo_press", "does not support fix_modify press"),
 }
 
 

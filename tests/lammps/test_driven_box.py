@@ -3,8 +3,6 @@
 Unsupported settings are in test_bad_input.py.
 """
 
-import re
-
 import numpy as np
 import pytest
 from pressed import REPULSIVE, distances, ends, pressed, trimers
@@ -254,37 +252,3 @@ def test_a_restart_in_the_middle_of_a_deformation_goes_on(lmp_wheel):
         assert "histories of the restart file go on" in result.stdout and "anew" not in result.stdout
         assert np.abs(frames[2] - frames[1])[:, 3:6].max() < 1e-12
         assert np.abs(frames[1] - frames[0])[:, 3:6].max() < 1e-4
-
-
-# --- jumps --------------------------------------------------------------------------------------
-
-LIQUID = """
-units real
-atom_style full
-atom_modify map yes
-region b block 0 15 0 15 0 15
-create_box 1 b
-mass 1 39.9
-lattice sc 3.75
-molecule d dimer.mol
-create_atoms 0 box mol d 4711
-pair_style lj/cut 7.0
-pair_coeff * * 0.24 3.0
-velocity all create 300 887
-neigh_modify every 1 delay 0 check yes exclude molecule/intra all
-fix f all gear/quat molecule temp 300 300 100
-run 300
-fix p all press/berendsen iso 1000 1000 100 modulus {}
-run 100
-"""
-
-
-@pytest.mark.parametrize("ranks, modulus", [(1, 10), (2, 10), (1, 100), (2, 100)])
-def test_a_box_that_jumps_is_named(lmp_tree, ranks, modulus):
-    dimer = "dimer\n\n2 atoms\n\nCoords\n\n1 -0.5 0 0\n2 0.5 0 0\n\nTypes\n\n1 1\n2 1\n"
-    (lmp_tree.folder / "dimer.mol").write_text(dimer)
-    message = "fix p (press/berendsen) has changed the length of the box along x"
-    result = lmp_tree.refuse(LIQUID.format(modulus), message, ranks=ranks)
-    assert re.search(r"along x by a factor of (-?[\d.]+|-?nan) in step", result.words)
-    mended = lmp_tree.succeed(LIQUID.format(100 * modulus), ranks=ranks)
-    assert "WARNING: Fix gear/quat" not in mended.words

@@ -156,10 +156,10 @@ def test_respa(lmp_tree):
 
 # mode, velocities, message
 AT_REST = [
-    ("total", "0 0 0", "total: the kinetic energy of the bodies is zero"),
-    ("separate", "0 0 0", "separate: the kinetic energy of the bodies is zero"),
-    ("separate", "0.3 0 0.1", "the rotational kinetic energy of the bodies is zero"),
-    ("separate", "v_sx v_sy 0", "the translational kinetic energy of the bodies is"),
+    ("total", "0 0 0", "a kinetic energy of the bodies is zero"),
+    ("separate", "0 0 0", "(translation 0, rotation 0)"),
+    ("separate", "0.3 0 0.1", ", rotation 0)"),
+    ("separate", "v_sx v_sy 0", "a kinetic energy of the bodies is zero"),
 ]
 
 

@@ -245,22 +245,13 @@ def test_isokinetic_and_momentum(lmp_wheel, mode):
     assert ends[1] == pytest.approx(ends[0], abs=1e-7)
 
 
-# --- watched, and fixes in no table --------------------------------------------------------------
+# --- watched --------------------------------------------------------------
 def test_reflecting_walls(lmp):
     """The run ends in the step that moves an atom of a body."""
     fix = "fix wall all wall/reflect xlo -9.0 xhi {}\nvelocity all set 1.0 0 0\nrun {}"
     lmp.succeed(two_molecules(after=fix.format(9.0, 50), boundary="f p p"))
     near = two_molecules(after=fix.format(6.2, 50), boundary="f p p")
     lmp.refuse(near, "fix wall (wall/reflect) has moved atom 5 of body 2 in step", ranks=2)
-
-
-def test_a_change_that_no_table_knows_is_told(lmp_wheel):
-    """Velocities changed after the fix, by a command before a run without setup."""
-    after = "run 5\nvelocity all set 1.0 2.0 3.0\nrun 5 pre no"
-    told = "the velocity of atom 1 of body 1 was changed before step 6 by something else"
-    assert told in lmp_wheel.succeed(two_molecules(after=after)).words
-    quiet = two_molecules(after="fix t all langevin 1 1 1 4711\nrun 5\nrun 5 pre no")
-    assert "something else" not in lmp_wheel.succeed(quiet).output
 
 
 @pytest.mark.parametrize("words", ["values 9", "corrector gear values 8", "formulation first corrector gear values 8"])

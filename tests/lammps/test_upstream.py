@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 from example_logs import copy_examples
-from running import ROOT, own_environment, tree_source
-from thrown import DECK
+from running import ROOT, tree_source
 
 PACKAGE = ROOT / "src" / "GEARQUAT"
 SOURCES = sorted([*PACKAGE.glob("*.h"), *PACKAGE.glob("*.cpp")])
@@ -89,25 +88,3 @@ def test_style_headers_include_their_base_class_only():
     assert "FixStyle(gear/quat,FixGearQuat);" in text and "LMP_FIX_GEAR_QUAT_H" in text
     ours = set(re.findall(r'#include "(.*)"', text)) - {path.name for path in SOURCES}
     assert ours == {"fix.h"}
-
-
-# --- citations ------------------------------------------------------------------------------------
-@pytest.mark.parametrize(
-    "keywords, papers",
-    {
-        "": set(),
-        "formulation first": {"Evans1977"},
-        "formulation second": {"Rapaport1985"},
-        "formulation first isokinetic total": {"Evans1977", "EvansGauss1983"},
-        "temp 1.0 1.0 0.5": {"Martyna1992"},
-    }.items(),
-)
-def test_papers_of_the_features_in_use(lmp_tree, keywords, papers, tmp_path):
-    deck = DECK.format(load="").replace("gear/quat single", f"gear/quat single {keywords}")
-    deck = deck[: deck.index("run 20")]
-    command = [lmp_tree.executable, "-cite", "cite.bib", "-log", "none", "-screen", "none"]
-    environment = {**own_environment(), **lmp_tree.environment}
-    subprocess.run(command, input=deck, text=True, cwd=tmp_path, env=environment, timeout=60, check=True)
-    asked = re.findall(r"^@\w+\{(\w+),", (tmp_path / "cite.bib").read_text(), re.M)
-    ours = set(asked) - {"LAMMPS", "Thompson2022"}
-    assert ours == {"Gear1971"} | papers and len(asked) == len(set(asked))
