@@ -146,7 +146,6 @@ void FixGearQuat::init()
   if (!step.had_run()) {
     stated = read_stated(lmp, args.mol);
     other_fixes.warn_of_noise();
-    warn_of_partial_molecules(lmp, this, fleet, ownership);
   }
   step.init();
   step.velocities_read = !reader_of_predicted_velocities(lmp, this).empty();

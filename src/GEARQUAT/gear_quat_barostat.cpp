@@ -584,9 +584,9 @@ void Barostat::add_rate(double h, std::vector<Rate> &table) const
 {
   if (!moves() || since < MEMORY * period()) return;
   const double radians = frequency() * std::fabs(h), followed = FOLLOWED * fastest;
-  table.push_back({"the angle of the oscillation of the box is", radians, followed,
-                   fmt::format("use a Pdamp of {:g} or longer",
-                               rounded_up(1.05 * period() * radians / followed))});
+  table.push_back(
+      {"the angle of the oscillation of the box is", radians, followed,
+       fmt::format("use a Pdamp of {:.4g} or longer", 1.05 * period() * radians / followed)});
 }
 
 /// The box is predicted, but LAMMPS still has the old box.

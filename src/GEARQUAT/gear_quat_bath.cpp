@@ -537,7 +537,7 @@ std::vector<Rate> Bath::rates(double h) const
   const double period = std::max(FEWEST_STEPS * std::fabs(h), 2.0 * words.damp * found / STRONGEST);
   if (thermostats > 0)
     table.push_back({"the friction of the thermostat is", found, STRONGEST,
-                     fmt::format("use a damping time of {:g} or longer", rounded_up(period))});
+                     fmt::format("use a damping time of {:.4g} or longer", period)});
   box.add_rate(h, table);
   return table;
 }

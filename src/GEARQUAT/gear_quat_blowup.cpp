@@ -38,9 +38,8 @@ void Step::note_rates(double edge)
   if (tolerance) return;
   const double h = std::fabs(length());
   const auto add = [&](const char *what, double radians, double limit, double advised) {
-    rates.push_back(
-        {what, radians, limit,
-         fmt::format("use a time step of {:g} or shorter", rounded_down(h * advised / radians))});
+    rates.push_back({what, radians, limit,
+                     fmt::format("use a time step of {:.4g} or shorter", h * advised / radians)});
   };
   double omega = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)

@@ -13,7 +13,6 @@
 #ifndef GEAR_QUAT_FIELDS_H
 #define GEAR_QUAT_FIELDS_H
 
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -65,15 +64,6 @@ class Fields {
   template <class T> void members_of(T &container, long)
   {
     for (auto &one : container) visit(one);
-  }
-  void members_of(std::string &text, int)
-  {
-    double size = (double) text.size();
-    number(size);
-    const bool fits = size >= 0.0 && size <= (double) all.size() - (double) at;
-    if (reads()) text.resize(fits ? (size_t) size : 0);
-    if (reads() && !fits) at = all.size() + 1;    // the file is damaged
-    for (char &one : text) number(one);
   }
 };
 

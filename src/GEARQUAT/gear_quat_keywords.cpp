@@ -27,6 +27,11 @@ using A = Arguments;
 using V = KeywordValue;
 using K = Keyword;
 
+template <int COMPONENT> static void set_pressure(A &a, const V &v)
+{
+  a.pressure.set(COMPONENT, v.numbers);
+}
+
 // clang-format off
 
 /// The reasons for the defaults are in doc/decisions.md.
@@ -124,18 +129,12 @@ const std::vector<Keyword> &GearQuat::keyword_table()
                a.pressure.set_all(v.numbers);
                for (int k = 3; k < 6; ++k) a.pressure.set(k, {0.0, 0.0, v.numbers[2]});
              }, "the pressure along each edge of a triclinic box, without shear stress"),
-    pressure("x", [](A &a, const V &v) { a.pressure.set(0, v.numbers); },
-             "the pressure along x, which changes that edge of the box"),
-    pressure("y", [](A &a, const V &v) { a.pressure.set(1, v.numbers); },
-             "the pressure along y, which changes that edge of the box"),
-    pressure("z", [](A &a, const V &v) { a.pressure.set(2, v.numbers); },
-             "the pressure along z, which changes that edge of the box"),
-    pressure("xy", [](A &a, const V &v) { a.pressure.set(5, v.numbers); },
-             "the shear component xy of the pressure, which changes that tilt"),
-    pressure("xz", [](A &a, const V &v) { a.pressure.set(4, v.numbers); },
-             "the shear component xz of the pressure, which changes that tilt"),
-    pressure("yz", [](A &a, const V &v) { a.pressure.set(3, v.numbers); },
-             "the shear component yz of the pressure, which changes that tilt"),
+    pressure("x", set_pressure<0>, "the pressure along x, which changes that edge of the box"),
+    pressure("y", set_pressure<1>, "the pressure along y, which changes that edge of the box"),
+    pressure("z", set_pressure<2>, "the pressure along z, which changes that edge of the box"),
+    pressure("xy", set_pressure<5>, "the shear component xy of the pressure, which changes that tilt"),
+    pressure("xz", set_pressure<4>, "the shear component xz of the pressure, which changes that tilt"),
+    pressure("yz", set_pressure<3>, "the shear component yz of the pressure, which changes that tilt"),
     {"couple", PHYSICS, K::WORD, {"none", "xyz", "xy", "yz", "xz"},
      [](A &a, const V &v) {
        int *tied = a.pressure.tied;

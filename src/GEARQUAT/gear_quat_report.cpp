@@ -34,15 +34,6 @@ using namespace GearQuat;
    what is refused
 ------------------------------------------------------------------------- */
 
-/// The atom is moved by a fix other than this one.
-static bool is_moved(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, int i)
-{
-  const auto &fixes = lmp->modify->get_fix_list();
-  return std::any_of(fixes.begin(), fixes.end(), [&](Fix *other) {
-    return other != fix && other->time_integrate && fleet.moves(other, lmp->atom, i);
-  });
-}
-
 /// Forces are evaluated once per step, so all levels of r-RESPA need the same time step.
 static void refuse_steps(LAMMPS *lmp)
 {
@@ -75,53 +66,6 @@ void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
                       "of the two",
                       shared, name_of(other));
   }
-}
-
-/* ----------------------------------------------------------------------
-   molecules that are only partly in bodies
-------------------------------------------------------------------------- */
-
-namespace {
-
-/// The kinds of atoms that a molecule has.
-struct Membership {
-  int in_body, unmoved;    ///< unmoved: in no body, and no fix moves it
-  void merge(const Membership &other)
-  {
-    in_body |= other.in_body;
-    unmoved |= other.unmoved;
-  }
-};
-
-}    // namespace
-
-void GearQuat::warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
-                                         const Ownership &ownership)
-{
-  const Atom *atom = lmp->atom;
-  if (!atom->molecule_flag) return;
-  std::vector<tagint> molecule(atom->molecule, atom->molecule + atom->nlocal);
-  for (auto &id : molecule) id = std::max(id, (tagint) 0);
-  const Parts parts(lmp->comm, lmp->world, molecule.data(), atom->nlocal);
-  std::vector<Membership> memberships(parts.number(), {0, 0});
-  for (int part = 0; part < parts.number(); ++part)
-    for (const int i : parts.atoms(part)) {
-      const int inside = ownership.in_body(i);
-      memberships[part].merge({inside, !inside && !is_moved(lmp, fix, fleet, i)});
-    }
-  parts.merge(memberships);
-  tagint example = MAXTAGINT;
-  for (int part = 0; part < parts.number(); ++part)
-    if (memberships[part].in_body && memberships[part].unmoved)
-      example = std::min(example, parts.key(part));
-  example = over_ranks(MPI_MIN, example, lmp->world);
-  if (example != MAXTAGINT && lmp->comm->me == 0)
-    lmp->error->warning(FLERR,
-                        "Fix gear/quat: molecules such as {} are only partly in bodies, and no fix "
-                        "moves the rest; if all of these atoms are to move as rigid molecules, "
-                        "complete the bodies and their groups before this fix, as by \"group {} "
-                        "include molecule\"",
-                        example, lmp->group->names[fix->igroup]);
 }
 
 /* ----------------------------------------------------------------------
@@ -278,10 +222,13 @@ std::string Report::effects() const
 std::vector<double> Report::labels(const Fleet &fleet) const
 {
   std::vector<double> made(atom->nlocal + atom->nghost, STILL);
+  const auto &fixes = modify->get_fix_list();
   for (int i = 0; i < atom->nlocal; ++i)
     if (ownership.in_body(i))
       made[i] = (double) ownership.id_of(i);
-    else if (is_moved(lmp, fix, fleet, i))
+    else if (std::any_of(fixes.begin(), fixes.end(), [&](Fix *other) {
+               return other != fix && other->time_integrate && fleet.moves(other, atom, i);
+             }))
       made[i] = MOVED_BY_OTHERS;
   ownership.spread_labels(made);
   return made;

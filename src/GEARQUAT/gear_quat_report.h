@@ -3,7 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Before a run: what is refused, probable mistakes of which rank 0 warns, and the report about the simulation: what is on, what is off and why, and which pairs of atoms cost time
+/* Before a run: what is refused, and the report about the simulation: what is on, what is off and why, and which pairs of atoms cost time
    and move nothing.  All are collective. */
 
 #ifndef LMP_GEAR_QUAT_REPORT_H
@@ -25,11 +25,6 @@ struct Fleet;
 /// Ends the run on all ranks with a reason: a time step of zero, r-RESPA with different steps, or
 /// atoms that another fix moves too.
 void refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Ownership &ownership);
-
-/// Warns of molecules with atoms in bodies and others that no fix moves; before the first run, when
-/// all fixes are defined.
-void warn_of_partial_molecules(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
-                               const Ownership &ownership);
 
 /// Writes the report to screen and log on rank 0, if args.report requests it, and in any case warns
 /// of a pair style that acts between atoms of a body; to be called in setup(), when neighbor lists

@@ -41,24 +41,6 @@ double GearQuat::fastest_oscillation(const Scheme &scheme)
   return FASTEST[row][scheme.values() - FEWEST];
 }
 
-/// whole: std::floor or std::ceil; nearly: a little more or less than 1.
-static double two_digits(double number, double (*whole)(double), double nearly)
-{
-  if (!std::isfinite(number) || number <= 0.0) return number;
-  const double unit = std::pow(10.0, std::floor(std::log10(number)) - 1.0);
-  return whole(number / unit * nearly) * unit;
-}
-
-double GearQuat::rounded_down(double number)
-{
-  return two_digits(number, std::floor, 1.0 + 1.0e-12);
-}
-
-double GearQuat::rounded_up(double number)
-{
-  return two_digits(number, std::ceil, 1.0 - 1.0e-12);
-}
-
 /* ----------------------------------------------------------------------
    the fast edge
 ------------------------------------------------------------------------- */

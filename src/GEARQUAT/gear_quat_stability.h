@@ -80,10 +80,6 @@ inline double longest_edge(const Scheme &scheme)
   return 2.0 / 3.0 * fastest_oscillation(scheme);
 }
 
-/// Two significant digits, rounded down or up.
-double rounded_down(double number);
-double rounded_up(double number);
-
 /// A row of the table of rates: a motion that every step has to resolve.
 struct Rate {
   std::string what;      ///< "the angle of the oscillation of the box is"

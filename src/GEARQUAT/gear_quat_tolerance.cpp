@@ -205,7 +205,6 @@ void Tolerance::begin_step()
                "out pre no");
   if (update->ntimestep == update->firststep + 1) begin_run();
   tries = 0;
-  refuse_frozen();
   if (forces) bodies.keep_histories();
 }
 
@@ -329,25 +328,10 @@ bool Tolerance::accepts()
   return true;
 }
 
-/// Refuses a step so short that the time would not change.
-void Tolerance::refuse_frozen() const
-{
-  const double begun = time_step.beginning();
-  double least = std::fabs(update->dt);
-  if (every_time > 0.0) least = std::min(least, every_time);
-  if (begun + least == begun)
-    error->all(
-        FLERR,
-        "Fix gear/quat tolerance: in step {} an interval of {:.3g} is below the last digit of "
-        "the time {:.9g}, which would not advance; use a larger tolerance, dtmax or every/time",
-        update->ntimestep, least, begun);
-}
-
 void Tolerance::shorten()
 {
   change_loads(failed.loads);
   time_step.change_begun(failed.step);
-  refuse_frozen();
 }
 
 double Tolerance::choose(double permitted)

@@ -167,7 +167,6 @@ class Tolerance : protected Pointers {
   void include(const Integrator &integrator, int ibody, const Load &load, StepErrors one);
   double first_step() const;
   void begin_run();
-  void refuse_frozen() const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

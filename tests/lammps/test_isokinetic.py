@@ -158,7 +158,7 @@ def test_respa(lmp_tree):
 AT_REST = [
     ("total", "0 0 0", "a kinetic energy of the bodies is zero"),
     ("separate", "0 0 0", "(translation 0, rotation 0)"),
-    ("separate", "0.3 0 0.1", ", rotation 0)"),
+    ("separate", "0.3 0 0.1", "a kinetic energy of the bodies is zero"),
     ("separate", "v_sx v_sy 0", "a kinetic energy of the bodies is zero"),
 ]
 

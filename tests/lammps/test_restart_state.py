@@ -165,7 +165,7 @@ NOT_IN_A_FILE = {
         STEP: "predicted errors speed tries failed fresh",
     },
     "temperature Temperature": {
-        COMMAND: "subtracted stop of_bodies words of_pressure",
+        COMMAND: "subtracted stop of_bodies words components",
         OTHERS: "fix bodies",
         DERIVED: "line freedoms",
         RUN: "constant stated outside of_total count_of mass changes natoms",
@@ -180,7 +180,7 @@ NOT_IN_A_FILE = {
         MESSAGES: "told warned",
     },
     "barostat Barostat": {
-        COMMAND: "asked is_asked changing_step fastest",
+        COMMAND: "asked fastest",
         OTHERS: "fix bodies sites temperature",
         DERIVED: "rate of_bodies",
         RUN: "since cell_at_nodes time_of_node present",

@@ -267,16 +267,6 @@ def test_the_first_step_is_within_the_limits(lmp_tree, words, shortest, longest,
     assert off(run, "TotEng") < 1e-12
 
 
-@pytest.mark.parametrize("bound", ["dtmax", "every/time"])
-def test_a_time_that_stands_still_is_refused(lmp_tree, bound):
-    """Tested after time zero, because at time zero no step is too short to change the time."""
-    again = "unfix move\nfix move all gear/quat molecule tolerance 1e-8 {} {}\nrun 10"
-    deck = meeting(1e-8, "lj/charmm/coul/charmm 4.0 6.0", f"run 10\n{again}")
-    assert "would not advance" not in lmp_tree.succeed(deck.format(bound, 1e-9)).output
-    said = f"tolerance: in step 11 an interval of 1e-20 is below the last digit of the time 0."
-    lmp_tree.refuse(deck.format(bound, 1e-20), said)
-
-
 def test_a_shortest_step_that_is_too_long_is_named(lmp_tree):
     deck = meeting(1e-8, "lj/charmm/coul/charmm 4.0 6.0", "run 10", words="dtmin 1e6")
     lmp_tree.refuse(deck, "and no dtmin")

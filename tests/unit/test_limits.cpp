@@ -140,12 +140,3 @@ TEST(Limits, TheFastestOscillation)
       EXPECT_EQ(table, row) << word_of(formulation) << other;
     }
 }
-
-TEST(Limits, RoundedDown)
-{
-  EXPECT_DOUBLE_EQ(rounded_down(1.299), 1.2);
-  EXPECT_DOUBLE_EQ(rounded_down(0.0171), 0.017);
-  EXPECT_DOUBLE_EQ(rounded_down(20.0), 20.0);
-  EXPECT_DOUBLE_EQ(rounded_down(3.0e-17), 3.0e-17);
-  EXPECT_EQ(rounded_down(INFINITE), INFINITE);
-}
