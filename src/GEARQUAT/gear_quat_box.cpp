@@ -240,20 +240,20 @@ void DrivenBox::init()
     driver = other;
     if (!known(Fact::CARRIES_BODIES, other))
       error->all(FLERR,
-                 "Fix gear/quat: fix {} ({}) changes the box without informing other fixes of "
+                 "Fix gear/quat: {} changes the box without informing other fixes of "
                  "the remap, so bodies cannot follow; use fix deform, fix press/berendsen, or "
                  "fix npt on other atoms",
-                 other->id, other->style);
+                 name_of(other));
     if (args.pressure.any())
       error->all(FLERR,
-                 "Fix gear/quat: keywords of constant pressure change the box, and fix {} ({}) "
+                 "Fix gear/quat: keywords of constant pressure change the box, and {} "
                  "changes it, too; leave out one of the two",
-                 other->id, other->style);
+                 name_of(other));
     if (args.control.eps > 0.0)
       error->all(FLERR,
-                 "Fix gear/quat tolerance cannot be used with fix {} ({}), whose box is a function "
+                 "Fix gear/quat tolerance cannot be used with {}, whose box is a function "
                  "of the number of the step; leave out keyword tolerance",
-                 other->id, other->style);
+                 name_of(other));
   }
   if (driver && domain->deform_vremap && args.isokinetic != Isokinetic::NONE)
     error->all(FLERR,
