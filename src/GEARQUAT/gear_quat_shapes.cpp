@@ -214,8 +214,7 @@ Twist GearQuat::nearest_twist(const Arms &arms, Mask off, const Load &sums)
   return {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
 }
 
-/// The unit quaternion of a rotation by a vector, in radians.
-static void quaternion_of_turn(const double *turn, double *q)
+void GearQuat::quaternion_of_turn(const double *turn, double *q)
 {
   const double angle = length(turn);
   const double part = angle > 0.0 ? std::sin(0.5 * angle) / angle : 0.5;

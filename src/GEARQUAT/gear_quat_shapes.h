@@ -24,6 +24,9 @@ namespace LAMMPS_NS::GearQuat {
 /// The unit quaternion of a rotation matrix A (space -> body, row-major), without small divisors.
 void quaternion_from_matrix(const double a[9], double *q);
 
+/// The unit quaternion of a rotation by a vector, in radians.
+void quaternion_of_turn(const double *turn, double *q);
+
 /// Principal moments and axes of a symmetric tensor (row-major) by cyclic Jacobi rotations.
 /// After the call the rows of `a` are the axes, a right-handed rotation matrix space -> body.  Axes
 /// are not sorted: an axis that is already principal does not change at all.

@@ -55,7 +55,7 @@ Fields::Numbers numbers_of(Outer one)
 TEST(Fields, AreReadAsTheyWereWritten)
 {
   const auto numbers = numbers_of(some());
-  EXPECT_EQ(numbers.size(), 2 + 2 + 3 + 2 + 4);
+  EXPECT_EQ(numbers.size(), 2U + 2U + 3U + 2U + 4U);
   Outer found;
   Fields file(numbers);
   file(found);
