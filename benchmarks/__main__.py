@@ -1,8 +1,6 @@
-"""The commands ``benchmarks/run`` and ``examples/run``."""
+"""The command ``benchmarks/run``."""
 
-import os
 import sys
-from functools import partial
 from pathlib import Path
 
 import click
@@ -57,7 +55,6 @@ def report(finding, check):
 @click.option("--render", "render_only", is_flag=True)
 @click.option("--jobs", type=click.IntRange(min=1), default=2)
 @click.option("--quick", is_flag=True)
-@click.option("--full", is_flag=True)
 @click.option("--hours", type=click.FloatRange(min=0), default=1.0)
 @click.option("--lmp")
 @click.option("--out", type=click.Path(file_okay=False, path_type=Path))
@@ -80,14 +77,5 @@ def main(names, out, publish_it, check, render_only, **options):
         sys.exit(1)
 
 
-#: the command examples/run: the same for one study
-examples = click.Command(
-    "examples/run",
-    callback=partial(main.callback, ["cases"]),
-    params=[option for option in main.params if option.name not in ("names", "hours")],
-    context_settings=main.context_settings,
-)
-
 if __name__ == "__main__":
-    program = os.environ.get("GEARQUAT_PROGRAM", "benchmarks/run")
-    (examples if program == examples.name else main)(prog_name=program)
+    main(prog_name="benchmarks/run")

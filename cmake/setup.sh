@@ -1,4 +1,4 @@
-# Sourced by benchmarks/run, examples/run, tests/run, doc/build, paper/build and cmake/packaging/check:
+# Sourced by benchmarks/run, tests/run, doc/build, paper/build and cmake/packaging/check:
 # installs system packages, .venv, and this repository in .venv.
 # ROOT is the repository. This file only defines functions.
 

@@ -14,10 +14,9 @@ of a study are its own, are used in its modules only, and keep their names.  The
 
     lab.sweep(name, deck, axes, read, settings)   every combination of values of variables -> read(finished)
     lab.many({name: Job(deck, variables, steps)}) side by side, --jobs at once -> {name: Finished}
-    lab.many(jobs, keep=True)                     the same, without jobs that are kept already (kept.py)
     lab.in_turn(jobs, rounds)                     one at a time, for timing -> {name: [Finished, ...]}
     lab.share(0.3)                                a context: its work fills that part of the progress bar
-    lab.quick, lab.full                           the requested options
+    lab.quick, lab.hours                          the requested options
 
 Where starting LAMMPS would take longer than the run, session.py keeps it in a process, times the ``run``
 command alone, and repeats competitors in turn until their medians are steady.
@@ -29,7 +28,7 @@ its Measurement; ``--check`` compares with it, pages do not show it.  Pictures a
 
 Templates consist of sentences and of the definitions of page.py:
 
-    {{ table("name") }}  {{ measured(measurements) }}  {{ picture("name", "Caption.") }}
+    {{ table("name") }}  {{ picture("name", "Caption.") }}
     {{ x | to(".1e") }}  {{ n | grouped }}
 """
 

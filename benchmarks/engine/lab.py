@@ -11,7 +11,6 @@ from pathlib import Path
 
 from lammps_gearquat.logs import Log
 
-from .kept import Kept
 from .runner import Interrupted, LammpsError, find_lmp, run
 from .sites import read_sites
 
@@ -20,15 +19,13 @@ from .sites import read_sites
 class Job:
     """One run of the ``deck`` at a path, with ``variables`` (name -> value) on this number of ``ranks``.
 
-    ``steps`` determines the order of the jobs and their weights in the progress bar.  ``plugin``: whether it uses fix
-    gear/quat, so that kept results belong to one build of the plugin.
+    ``steps`` determines the order of the jobs and their weights in the progress bar.
     """
 
     deck: Path
     variables: dict
     steps: int = 1
     ranks: int = 1
-    plugin: bool = True
 
 
 @dataclass(frozen=True)
@@ -50,25 +47,17 @@ class Finished:
         return read_sites(self.dump)
 
 
-def _is_result(error, may_fail):
-    """True if a run with this error, "" for none, counts as a result; None means that there is no run.  See
-    Lab.many."""
-    if not error:
-        return error is not None
-    return may_fail(error) if callable(may_fail) else may_fail
-
-
 class Lab:
     """Runs jobs; ``out`` is the folder that gets ``logs`` and ``dumps``.
 
-    ``jobs``: number of simultaneous runs.  ``quick`` and ``full``: whether the study should do less, or also very long
-    runs.  ``hours``: duration of a study that never ends by itself.  ``advance(part)`` receives the part of the work of
-    the study that has been done since its last call.
+    ``jobs``: number of simultaneous runs.  ``quick``: whether the study should do less.  ``hours``: duration of a study
+    that never ends by itself.  ``advance(part)`` receives the part of the work of the study that has been done since its
+    last call.
     """
 
-    def __init__(self, out, lmp=None, jobs=2, quick=False, full=False, hours=1.0, advance=None):
+    def __init__(self, out, lmp=None, jobs=2, quick=False, hours=1.0, advance=None):
         self.out, self.jobs = Path(out), jobs
-        self.quick, self.full, self.hours = quick, full, hours
+        self.quick, self.hours = quick, hours
         self._lmp, self._lock = lmp, threading.Lock()
         self._weight = self._left = 1.0
         self._advance = advance or (lambda part: None)
@@ -77,11 +66,6 @@ class Lab:
     def lmp(self):
         """The LAMMPS program.  Raises LammpsError if there is none."""
         return find_lmp(self._lmp)
-
-    def prefer(self, lmp):
-        """Run this LAMMPS program, if it exists, unless another program was requested."""
-        if self._lmp is None and Path(lmp).is_file():
-            self._lmp = str(lmp)
 
     @contextmanager
     def share(self, part):
@@ -106,20 +90,16 @@ class Lab:
         """Path of the dump of a run."""
         return self.out / "dumps" / f"{name}.dump"
 
-    def many(self, jobs, may_fail=False, keep=False):
+    def many(self, jobs, may_fail=lambda error: False):
         """Run ``jobs``, name -> Job, side by side, the longest first; returns name -> Finished.
 
-        ``may_fail``: whether an error of LAMMPS is a result, or a function that tells from its text.  Any other error
-        ends all runs and is raised as LammpsError.  ``keep``: whether the results of earlier runs with the same input
-        are reused; see kept.py.
+        ``may_fail(error)``: whether an error of LAMMPS is a result.  Any other error ends all runs and is raised as
+        LammpsError.
         """
         stop, total = threading.Event(), sum(job.steps for job in jobs.values())
         order = sorted(jobs, key=lambda name: -jobs[name].steps)
         with ThreadPoolExecutor(max_workers=self.jobs) as pool:
-            futures = {
-                name: pool.submit(self._run, name, jobs[name], may_fail, stop, total, keep)
-                for name in order
-            }
+            futures = {name: pool.submit(self._run, name, jobs[name], may_fail, stop, total) for name in order}
             try:
                 errors = [future.exception() for future in futures.values()]
             except BaseException:  # Ctrl-C
@@ -139,17 +119,17 @@ class Lab:
         total = rounds * sum(job.steps for job in jobs.values())
         for number in range(1, rounds + 1):
             for name in names:
-                finished = self._run(f"{name}.{number}", jobs[name], False, threading.Event(), total)
+                finished = self._run(f"{name}.{number}", jobs[name], lambda error: False, threading.Event(), total)
                 finished_runs[name].append(finished)
             names.rotate(-1)
         return finished_runs
 
-    def sweep(self, name, deck, axes, read, settings=None, **options):
+    def sweep(self, name, deck, axes, read, settings=None):
         """Run a deck for every combination of ``axes``, a dictionary variable -> values.
 
         ``settings``: further variables, or a function of the combination (a dictionary) that returns
-        them; "steps" must be among all of them.  ``options`` as in ``many``.  Returns tuple of
-        values -> ``read(finished)``; a tuple of one value is that value.
+        them; "steps" must be among all of them.  Returns tuple of values -> ``read(finished)``; a tuple of one value is
+        that value.
         """
         jobs, keys = {}, {}
         for values in itertools.product(*axes.values()):
@@ -158,20 +138,14 @@ class Lab:
             of_run = "_".join([name, *map(str, values)])
             jobs[of_run] = Job(deck, variables, int(variables["steps"]))
             keys[of_run] = values if len(values) > 1 else values[0]
-        finished_runs = self.many(jobs, **options)
+        finished_runs = self.many(jobs)
         return {keys[of_run]: read(finished) for of_run, finished in finished_runs.items()}
 
-    def _run(self, name, job, may_fail, stop, total, keep=False):
+    def _run(self, name, job, may_fail, stop, total):
         if stop.is_set():
             raise Interrupted(name)
         log, dump = self.out / "logs" / f"log.{name}", self.dump(name)
         dump.parent.mkdir(parents=True, exist_ok=True)
-        kept = Kept(log, dump.parent, name, job, self.lmp) if keep else None
-        if kept and _is_result(kept.error(), may_fail):
-            self.advance(job.steps / total)
-            return Finished(Log(log), dump, kept.error())
-        if kept:
-            kept.forget()
         variables = job.variables | {"out": dump.with_suffix("").resolve()}
         done, error = 0, ""
 
@@ -187,10 +161,8 @@ class Lab:
             raise
         except LammpsError as failure:
             error = str(failure)
-            if not _is_result(error, may_fail):
+            if not may_fail(error):
                 stop.set()
                 raise
         self.advance((job.steps - done) / total)
-        if kept:
-            kept.write(error)
         return Finished(Log(log), dump, error)

@@ -35,8 +35,7 @@ def _environment(folder, finding):
     """Jinja2 with the filters and functions of the templates; undefined names are errors.
 
     ``x | to(".1e")`` formats a number, ``n | grouped`` a large one, and ``n | rounded`` keeps two digits of it.
-    ``table(name)`` shows a table of the finding, ``measured(measurements)`` a table of
-    measurements, ``picture(name, caption)`` a picture with its caption.  Pictures are in a ``folder`` beside the page.
+    ``table(name)`` shows a table of the finding, ``picture(name, caption)`` a picture with its caption.  Pictures are in a ``folder`` beside the page.
     """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
@@ -49,21 +48,18 @@ def _environment(folder, finding):
     def table(name):
         return markdown_table(finding.tables[name].header, finding.tables[name].rows)
 
-    def measured(measurements):
-        return markdown_table(("measurement", "value"), [(m.what, m.text) for m in measurements])
-
     def picture(name, caption):
         if name not in finding.pictures:
             raise KeyError(f"the study draws no picture {name}")
         return f"![{caption}]({folder}/{file_of(name)})\n\n*{caption}*"
 
     environment.filters |= {"to": format, "grouped": grouped, "rounded": rounded}
-    environment.globals |= {"table": table, "measured": measured, "picture": picture}
+    environment.globals |= {"table": table, "picture": picture}
     return environment
 
 
 def render(template, study, finding, provenance):
     """Text of a template of a study; ``provenance``: a sentence on the origin of the measurement."""
     environment = _environment(study.key, finding)
-    names = {"provenance": provenance, "measurements": finding.measurements}
+    names = {"provenance": provenance}
     return environment.get_template(template).render(**names, **finding.context).strip()

@@ -4,19 +4,11 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-#: column of the thermo output -> column of the CSV file
-COLUMNS = {
-    "Step": "step",
-    "Time": "time",
-    "c_centre[1]": "x",
-    "c_centre[2]": "y",
-    "c_centre[3]": "z",
-    "c_potential": "potential",
-    "v_ketrans": "ke_translation",
-    "v_kerot": "ke_rotation",
-    "v_total": "total",
-    "v_qerror": "q_error",
-}
+#: columns of the thermo output
+COLUMNS = (
+    *("Step", "Time", "c_centre[1]", "c_centre[2]", "c_centre[3]", "c_potential"),
+    *("v_ketrans", "v_kerot", "v_total", "v_qerror"),
+)
 
 
 @dataclass(frozen=True)
@@ -62,10 +54,3 @@ def from_thermo(thermo):
 def of_log(log):
     """Series of the last run of a Log."""
     return from_thermo(log.thermo)
-
-
-def write_csv(path, series):
-    """Write a series with 17 significant digits."""
-    table = np.column_stack([getattr(series, field.name) for field in fields(series)])
-    header = ",".join(COLUMNS.values())
-    np.savetxt(path, table, fmt="%.17g", delimiter=",", header=header, comments="")

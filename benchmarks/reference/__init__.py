@@ -16,12 +16,10 @@ double.  Contents and use::
     top = problem.with_field(FreeField())            # the same bodies and start, no forces
 
     # State in long double: exact without forces, else by extrapolation
-    end = reference_state(problem, 200.0, folder=cache)
+    end = reference_state(problem, 200.0)
     end.center, end.velocity, end.q, end.omega_body  # (B, 3) (B, 3) (B, 4) (B, 3)
     end.double                                       # the same as float64
     a, b = reference_states(problem, [100.0, 200.0]) # several times, one integration
-    # forces that jump: no error estimate helps; judge it by another fixed step
-    end = reference_state(problem, 20.0, fixed_step=0.01)
 
     # sites (S, 3), unwrapped, to compare with a dump; their atom IDs in a deck_problem
     problem.site_positions(end), problem.field.ids
@@ -35,12 +33,11 @@ double.  Contents and use::
 State of a body: center of mass and velocity in space axes; q in the paper's order (vector part
 first, scalar last; A(q) of Eq. 8 turns space into body axes); omega_body along the principal axes,
 radians per unit of time.  Units follow the field.  The order and directions of the principal axes depend on how a
-problem was made: compare q within one problem, sites between two.  A reference is made once and kept in memory; with
-``folder`` also on disk, under a name made of the problem's content.
+problem was made: compare q within one problem, sites between two.
 
 Files: quaternion.py; equations.py (bodies, state, rates, energies); fields.py (cage, none);
 lammps_forces.py (LAMMPS' own forces); paper.py (the paper's body and starts); integrators.py
-(Gragg-Bulirsch-Stoer); free_top.py (exact); store.py (cache); solvers.py (errors; solvers that
+(Gragg-Bulirsch-Stoer); free_top.py (exact); solvers.py (errors; solvers that
 control their steps); multistep.py (symmetric, order 8); splittings.py (exact free rotation between kicks);
 stability.py (stable steps of the methods of the fix for a linear equation); central.py and deflection.py (collisions
 of two atoms).
@@ -48,8 +45,8 @@ of two atoms).
 
 from .equations import Problem, RigidBodies, State, bodies_from_sites
 from .fields import Cage, FreeField
+from .integrators import reference_state, reference_states
 from .paper import paper_problem
-from .store import reference_state, reference_states
 
 __all__ = [
     "Cage",

@@ -163,7 +163,7 @@ class Problem:
     """An initial value problem: bodies in a field from a start on.
 
     ``name`` is for messages; ``field`` has ``energy_and_forces(positions)`` for site positions
-    (S, 3), the two factors of the units, ``astype`` and ``fingerprint`` (see fields.py);
+    (S, 3), the two factors of the units and ``astype`` (see fields.py);
     ``start`` is the State at t = 0.
     """
 

@@ -5,7 +5,6 @@ A field has
     force_to_acceleration, kinetic_to_energy   factors of its units (LAMMPS' ftm2v and mvv2e)
     dtype                         float type its forces are good to, None for any
     astype(dtype)                 itself, for states of another float type
-    fingerprint()                 bytes that differ when the field does: part of a cache's key
 """
 
 import numpy as np
@@ -30,9 +29,6 @@ class FreeField(LennardJonesUnits):
         """The field itself: it follows the positions' float type."""
         return self
 
-    def fingerprint(self):
-        """Part of a cache's key."""
-        return b"free"
 
 
 class Cage(LennardJonesUnits):
@@ -69,8 +65,3 @@ class Cage(LennardJonesUnits):
     def astype(self, dtype):
         """The cage in another float type."""
         return Cage(dtype)
-
-    def fingerprint(self):
-        """Part of a cache's key."""
-        numbers = (self.positions, self.charges, self.site_charges, (self.SIGMA, self.EPSILON))
-        return b"".join(np.asarray(n, dtype=np.float64).tobytes() for n in numbers)

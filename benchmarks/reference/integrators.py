@@ -19,6 +19,7 @@ from math import prod
 import numpy as np
 
 from .equations import State
+from .fields import FreeField
 
 #: columns K of the extrapolation, order 2K; its weights enlarge rounding of the rates 56 times ...
 COLUMNS = 7
@@ -49,15 +50,13 @@ def _as_float(fraction, dtype):
 class GraggBulirschStoer:
     """Extrapolation for y' = rates(t, y); ``rates`` was called ``evaluations`` times so far.
 
-    ``scales(y)`` is the size of y by column, to which the tolerance is relative.  With a
-    ``fixed_step`` the tolerance is of no effect.
+    ``scales(y)`` is the size of y by column, to which the tolerance is relative.
     """
 
-    def __init__(self, rates, scales, tolerance, dtype, columns=COLUMNS, fixed_step=None):
+    def __init__(self, rates, scales, tolerance, dtype, columns=COLUMNS):
         if columns < 3:
             raise ValueError(f"at least 3 columns are required, not {columns}")
         counts = [2 * (k + 1) for k in range(columns)]
-        self.fixed_step = fixed_step
         self.rates, self.scales, self.tolerance = rates, scales, tolerance
         self.counts, self.order = counts, 2 * columns
         self.weights = np.array([_as_float(w, dtype) for w in extrapolation_weights(counts)])
@@ -96,8 +95,6 @@ class GraggBulirschStoer:
 
     def _next_step(self, h, error):
         """The step to follow one of size h whose error, in units of the tolerance, is this."""
-        if self.fixed_step:
-            return self.fixed_step
         if not np.isfinite(error):
             return abs(h) * SHRINK
         best = MARGIN * max(error, 1e-30) ** (-1 / (self.order - 1))
@@ -107,7 +104,7 @@ class GraggBulirschStoer:
         """States at ``times`` (monotonic; y is the state at the first), shape (len(times), *y.shape)."""
         carry, t, states = np.zeros_like(y), times[0], [y]
         slope = self._rates(t, y)
-        step = first = self.fixed_step or self.first_step(y, slope, times[-1] - times[0])
+        step = first = self.first_step(y, slope, times[-1] - times[0])
         for stop in times[1:]:
             while t != stop:
                 # equal parts of the remaining time, so that the last part is not tiny
@@ -115,7 +112,7 @@ class GraggBulirschStoer:
                 h = (stop - t) / parts
                 change, error = self._change(t, y, slope, h)
                 following = self._next_step(h, error)
-                if error <= 1 or self.fixed_step:
+                if error <= 1:
                     # Kahan's sum: the rounding error of y is added to the next change
                     change = change + carry
                     after = y + change
@@ -135,27 +132,45 @@ class GraggBulirschStoer:
         return np.array(states)
 
 
-def integrate(problem, times, tolerance=None, columns=None, fixed_step=None):
+def integrate(problem, times, tolerance=None, columns=None):
     """States of a Problem at ``times``, which rise from 0 or fall from it; 0 need not be listed.
 
     Everything is done in the float type of the problem.  ``tolerance`` bounds the error estimate of every step,
     relative to the largest position, velocity, ... of any body; it and ``columns`` follow from the float type of the
-    field's forces unless given.  If forces jump, no error estimate helps; in this case a ``fixed_step`` takes its place
-    (an upper bound: the time between two of ``times`` is cut into equal parts), and two of them tell the error.
+    field's forces unless given.
     """
     dtype = problem.dtype.type
     times = [dtype(t) for t in times]
     steps = np.diff(np.array([dtype(0), *times]))
     if not times or not ((steps >= 0).all() or (steps <= 0).all()):
         raise ValueError("times are required that rise (or fall) from 0 on")
-    if fixed_step is not None and not fixed_step > 0:
-        raise ValueError(f"a fixed step above zero is required, not {fixed_step}")
     extended = problem.field.dtype is None
     if tolerance is None:
         tolerance = TOLERANCE if extended else TOLERANCE_DOUBLE_FORCES
     if columns is None:
         columns = COLUMNS if extended else COLUMNS_DOUBLE_FORCES
     scales = problem.scales
-    solver = GraggBulirschStoer(problem.rates, scales, tolerance, dtype, columns, fixed_step)
+    solver = GraggBulirschStoer(problem.rates, scales, tolerance, dtype, columns)
     states = solver.advance(problem.start.packed(), [dtype(0), *times])[1:]
     return [State.of(packed) for packed in states]
+
+
+def reference_states(problem, times, tolerance=None):
+    """States at ``times``, rising from 0: list of State in long double (``.double`` rounds them).
+
+    Without forces they are exact (free_top.py).  In an extended field they are good to about 1e-14
+    of the size of the scene while the motion is not chaotic; in LAMMPS' field, whose forces are double, rounding
+    limits them: ten times less accurate in the paper's cage.  Raises RuntimeError if long double is not extended.
+    """
+    if np.finfo(problem.dtype).eps > 1.1e-19:
+        raise RuntimeError(f"a NumPy long double of at least 64 bits' precision is required, not {problem.dtype}")
+    if isinstance(problem.field, FreeField):
+        from .free_top import exact_state  # needs mpmath
+
+        return [exact_state(problem, time) for time in times]
+    return integrate(problem, times, tolerance)
+
+
+def reference_state(problem, time, tolerance=None):
+    """State at ``time``, see ``reference_states``."""
+    return reference_states(problem, [time], tolerance)[0]

@@ -11,7 +11,6 @@ put at the periodic image nearest to where LAMMPS has it, so unwrapped positions
 """
 
 import contextlib
-import hashlib
 import os
 import re
 import tempfile
@@ -181,11 +180,6 @@ class LammpsForces:
             raise DeckError(f"{self.deck.name}: there is no atom {unknown[0]}")
         self._row = np.full(len(self._all_ids), -1)
         self._row[np.searchsorted(self._all_ids, self.ids)] = np.arange(len(self.ids))
-        # taken here, with the neighbor list of the start, so that it repeats to the bit
-        energy, forces = self.energy_and_forces(self.start_positions())
-        parts = (self.ids, self._box, np.array([energy]), forces)
-        text = f"LAMMPS {self.lmp.version()} ".encode() + b"".join(p.tobytes() for p in parts)
-        self._fingerprint = hashlib.sha256(text).digest()
 
     # --- the field ------------------------------------------------------------------------------
 
@@ -216,10 +210,6 @@ class LammpsForces:
     def astype(self, _dtype):
         """The field itself: its forces are double whatever the positions are."""
         return self
-
-    def fingerprint(self):
-        """Part of a cache's key: version, box, and energy and forces at the start."""
-        return self._fingerprint
 
 
 def deck_problem(deck, variables=None, name=None, dtype=np.longdouble):

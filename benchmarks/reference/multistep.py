@@ -11,7 +11,7 @@ import numpy as np
 
 from . import quaternion as qt
 from .equations import State
-from .store import reference_states
+from .integrators import reference_states
 
 LABEL, LENGTH = "Quinlan–Tremaine 8", 8
 A = np.array([1, -2, 2, -1, 0, -1, 2, -2])

@@ -86,9 +86,9 @@ class Reference:
     sites: np.ndarray
 
     @classmethod
-    def of(cls, problem, end, folder, **accuracy):
-        """The Reference of a Problem; states are stored in ``folder``."""
-        state = reference_state(problem, end, folder=folder, **accuracy)
+    def of(cls, problem, end, tolerance=None):
+        """The Reference of a Problem, with a ``tolerance`` of the integrator."""
+        state = reference_state(problem, end, tolerance)
         sites = problem.site_positions(state).astype(np.float64)
         return cls(problem, state, getattr(problem.field, "ids", np.arange(1, len(sites) + 1)), sites)
 
@@ -145,7 +145,7 @@ def measure(lab):
     found, rounds = {}, QUICK_ROUNDS if lab.quick else ROUNDS
     with Session(lab.out / "logs") as session:
         for scene in SCENES:
-            reference = Reference.of(problem_of(scene), scene.end, lab.out / "reference")
+            reference = Reference.of(problem_of(scene), scene.end)
             runs = [(method, steps) for method in METHODS for steps in numbers_of_steps(method, lab.quick)]
             points = {run: _errors(session, scene, reference, *run) for run in runs}
             ended = [run for run, (outcome, _) in points.items() if outcome is not None]

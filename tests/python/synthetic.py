@@ -53,7 +53,7 @@ def made_up(run):
     return replace(values, step=time / run.dt)
 
 
-def made_up_results(full=False):
+def made_up_results():
     """Results of ``benchmarks/run cases`` as claimed in the paper."""
-    runs = plan.planned_runs(plan.STEP, full)
+    runs = plan.planned_runs(plan.STEP)
     return plan.Results(plan.STEP, {run.name: made_up(run) for run in runs})

@@ -65,7 +65,7 @@ def test_pose_errors_are_rms_over_bodies():
 # --- real LAMMPS ----------------------------------------------------------------------------------
 def test_errors_of_a_run_and_its_repetition(tmp_path):
     scene = accuracy.SCENES[0]
-    reference = accuracy.Reference.of(accuracy.problem_of(scene), scene.end, tmp_path)
+    reference = accuracy.Reference.of(accuracy.problem_of(scene), scene.end)
     with Session(tmp_path / "logs") as session:
         outcome, point = accuracy._errors(session, scene, reference, AUTOMATIC, 5120)
         body, masses = outcome.molecules == 1, outcome.masses

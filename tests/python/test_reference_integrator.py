@@ -13,9 +13,9 @@ from benchmarks.reference.integrators import GraggBulirschStoer, NotReached, int
 LONG = np.longdouble
 
 
-def plain(rates, columns=7, tolerance=1e-17, fixed_step=None):
+def plain(rates, tolerance=1e-17):
     """Integrator of a system of any shape."""
-    return GraggBulirschStoer(rates, np.abs, tolerance, LONG, columns, fixed_step)
+    return GraggBulirschStoer(rates, np.abs, tolerance, LONG)
 
 
 def oscillator(_t, y):
@@ -30,18 +30,6 @@ def test_weights_are_exact(columns):
     for power in range(1, columns):
         assert sum(w / n ** (2 * power) for w, n in zip(weights, counts)) == 0
     assert sum(w / n ** (2 * columns) for w, n in zip(weights, counts)) != 0
-
-
-@pytest.mark.parametrize("columns, steps", [(3, (4, 8, 16, 32, 64)), (5, (3, 6, 12))])
-def test_order_is_the_slope(columns, steps):
-    errors = []
-    for count in steps:
-        solver = plain(oscillator, columns, fixed_step=LONG(6) / count)
-        end = solver.advance(np.array([LONG(1), LONG(0)]), [LONG(0), LONG(6)])[-1]
-        errors.append(float(np.hypot(end[0] - np.cos(LONG(6)), end[1] + np.sin(LONG(6)))))
-        assert solver.evaluations == count * (columns**2 + 1) + 1
-    slopes = -np.diff(np.log(errors)) / np.diff(np.log(steps))
-    assert slopes[-1] == pytest.approx(2 * columns, abs=0.4)
 
 
 def test_error_follows_the_tolerance():
@@ -61,9 +49,6 @@ def test_a_jump_is_not_integrated_in_silence():
     start, times = np.array([LONG(1), LONG(0)]), [LONG(0), LONG(10)]
     with pytest.raises(NotReached, match="a tolerance above 1e-17 is required, or forces without"):
         plain(jumping).advance(start, times)
-    end = plain(jumping, columns=3, fixed_step=LONG("0.01")).advance(start, times)[-1]
-    energy = end[1] ** 2 / 2 + end[0] ** 2 / 2 + abs(end[0])
-    assert energy == pytest.approx(1.5, abs=1e-2)
 
 
 TABLE = [  # from the notes on the paper: extended precision, correct except for the last digit

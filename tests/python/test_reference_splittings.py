@@ -61,9 +61,6 @@ class Springs(LennardJonesUnits):
     def astype(self, _dtype):
         return self
 
-    def fingerprint(self):
-        return b"springs"
-
 
 def driven_top():
     """An asymmetric body of four sites in Springs."""

@@ -117,7 +117,6 @@ def find(results):
         "better": listed(step for step, a, b in zip(steps, ours, rigid) if a < b),
         "worse": listed(step for step, a, b in zip(steps, ours, rigid) if not a < b),
         "ends": (ACCURACY_END, END),
-        "fine": results.fine,
     }
     found = measurements(position, energy, steps, count)
     return Finding(found, tables, pictures(results), context, summary(claims))

@@ -134,9 +134,9 @@ def initial_energy(results, case, energy, digits):
         yield Reading(body, f"{start:+.8f}", bool(abs(start - energy) <= 0.5 * 10**-digits))
 
 
-def energy_error(results, case, formulation, fine=False):
+def energy_error(results, case, formulation):
     """The largest error of the total energy, in parentheses relative to the swing of the potential."""
-    for body, values in printed(results, case, formulation, dt=results.fine if fine else None):
+    for body, values in printed(results, case, formulation):
         error, swing = np.abs(dv.energy_error(values)).max(), dv.energy_scale(values)
         yield Reading(
             body, f"{error:.2g} ({100 * error / swing:.2g} %)", bool(error <= VISIBLE * swing)
@@ -274,13 +274,13 @@ def energy_printed(case, energy, digits):
     )
 
 
-def energy_held(case, formulation, figure, fine=False):
+def energy_held(case, formulation, figure):
     """A figure of the paper shows a level total energy."""
     return Claim(
-        f"test case {case}, {figure}" + (", 50 million steps" if fine else ""),
+        f"test case {case}, {figure}",
         f"the {formulation} formulation holds the total energy tightly",
         f"the largest error is below {PERCENT} of the swing of the potential energy",
-        partial(energy_error, case=case, formulation=formulation, fine=fine),
+        partial(energy_error, case=case, formulation=formulation),
         lead="largest error of the energy (in parentheses, relative to the swing): ",
     )
 
@@ -395,11 +395,8 @@ CLAIMS = (
         reason="the corrected omega is better, but both converge: the predicted omega is not an error",
     ),
 )
-#: additional claims for the 50 million steps of --full
-FINE_CLAIMS = (energy_held(1, "first", "Fig. 2", True), energy_held(1, "second", "Fig. 3", True))
 
 
 def all_claims(results):
     """Every claim of the paper with its verdict: list of Judged."""
-    claims = CLAIMS + (FINE_CLAIMS if results.fine else ())
-    return [Judged(claim, tuple(claim.measure(results))) for claim in claims]
+    return [Judged(claim, tuple(claim.measure(results))) for claim in CLAIMS]

@@ -40,7 +40,6 @@ AS_PRINTED, ACCURATE = ("consistent-zero-free", "unrotated-zero-free"), "consist
 STEP = {1: 0.001, 2: 0.125, 3: 0.005}  # of Table 7
 QUICK_STEP = {1: 0.005, 2: 0.125, 3: 0.025}
 END = 5000.0
-FINE_STEP = 0.0001  # --full: the 50 million steps of Figs. 2 to 4
 
 #: case: (fraction of the step of Table 7, end) of the runs that test the effect of the step
 OTHER_STEP = {1: (1 / 2, 1500.0), 3: (1 / 5, 1500.0)}
@@ -88,7 +87,7 @@ class Run:
         return Job(deck(f"case{self.case}"), variables, steps)
 
 
-def planned_runs(step, full=False):
+def planned_runs(step):
     """All runs for the tables and the figures; ``step``: case -> its step."""
     others, runs = [(ACCURATE, "momentum"), (ACCURATE, "rigid")], []
     every = [*itertools.product(ROWS, FORMULATIONS), *others]
@@ -103,8 +102,6 @@ def planned_runs(step, full=False):
     for dt in (*ACCURACY_STEPS, *COARSE_STEPS):
         end = END if dt in COARSE_STEPS else ACCURACY_END
         runs += [Run(1, *method, dt, end) for method in compared]
-    if full:
-        runs += [Run(1, *method, FINE_STEP) for method in both]
     return runs
 
 
@@ -123,18 +120,9 @@ class Results:
         """The step of the case's runs that test the effect of the step."""
         return self.step[case] * OTHER_STEP[case][0]
 
-    @property
-    def fine(self):
-        """FINE_STEP if the 50 million steps were run, else None."""
-        return FINE_STEP if name_of(1, AS_PRINTED[0], "first", FINE_STEP) in self.series else None
-
 
 def measure(lab):
-    """Run everything and return Results.  Writes each series as CSV to the folder ``series``."""
+    """Run everything and return Results."""
     step = QUICK_STEP if lab.quick else STEP
-    found = lab.many({run.name: run.job for run in planned_runs(step, lab.full)})
-    results = Results(step, {name: series.of_log(run.log) for name, run in found.items()})
-    (lab.out / "series").mkdir(exist_ok=True)
-    for name, values in results.series.items():
-        series.write_csv(lab.out / "series" / f"{name}.csv", values)
-    return results
+    found = lab.many({run.name: run.job for run in planned_runs(step)})
+    return Results(step, {name: series.of_log(run.log) for name, run in found.items()})

@@ -154,9 +154,9 @@ def equilibrate(lab, plan, liquids_and_numbers):
         own |= {"template": template(liquid), "steps": plan.equilibration, "shrinking": plan.shrinking}
         for start in numbers:
             name = f"equilibrate_{liquid.key}_{start}"
-            jobs[name] = Job(_deck("equilibrate"), own | {"seed": 4711 + start}, plan.equilibration, plugin=False)
+            jobs[name] = Job(_deck("equilibrate"), own | {"seed": 4711 + start}, plan.equilibration)
             data[liquid.key, start] = lab.dump(name).with_suffix(".data").resolve()
-    lab.many(jobs, keep=True)
+    lab.many(jobs)
     return data
 
 
@@ -166,7 +166,7 @@ def job(liquid, data, method, dt, duration, interval=INTERVAL):
     steps = every * math.ceil(duration / (every * dt) - 1e-9)
     variables = {"liquid": liquid.key, "data": data, "pair": liquid.pair, "kspace": f"{liquid.kspace} {liquid.accuracy}"}
     variables |= {"dt": f"{dt:.17g}", "every": every, "steps": steps, **method.variables}
-    return Job(_deck("liquid"), variables, steps, plugin=method.gear)
+    return Job(_deck("liquid"), variables, steps)
 
 
 def read(finished, duration):
@@ -189,7 +189,7 @@ def measure(lab):
             jobs[f"{liquid.key}_{method.key}_dt{dt:g}_{start}"] = made, (liquid.key, method.key, dt)
     with lab.share(0.9):
         made = {name: made for name, (made, _) in jobs.items()}
-        finished = lab.many(made, may_fail=lambda text: any(words in text for words in LOST), keep=True)
+        finished = lab.many(made, may_fail=lambda text: any(words in text for words in LOST))
     results = Results(plan, {})
     for name, (made, key) in jobs.items():
         results.runs.setdefault(key, []).append(read(finished[name], made.steps * key[-1]))

@@ -15,14 +15,14 @@ from benchmarks.engine import EXAMPLES, Finding, Measurement, Study, Table
 from benchmarks.engine.statistics import Mean, allowed, mean_of_series, slope, with_error
 
 OURS, RIGID, SHAKE = "gear", "rigid", "shake"
-SHEARED, SMALL = "sheared", "small"
+SHEARED = "sheared"
 METHODS = {OURS: "`fix gear/quat`", RIGID: "`fix rigid/npt/small`", SHAKE: "`fix shake` and `fix npt`"}
 WATER, CRYSTAL = EXAMPLES / "water_npt" / "in.water_npt", Path(__file__).parent / "in.crystal"
 MOLECULES, TEMPERATURE, BOLTZMANN = 216, 300.0, 0.0019872067
 FREEDOMS = 6 * MOLECULES - 3
 DUMBBELLS_KT, TARGETS = 0.5, (0.5, 0.5, 1.5)
-#: target of xy in a crystal that shears; cells along an edge and Pdamp of the small crystal for the energies of the box
-SHEAR, FEW, PDAMP = 0.3, 2, 2.0
+#: target of xy in a crystal that shears
+SHEAR = 0.3
 #: kT/ns per degree of freedom
 DRIFT = 0.05
 COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -39,19 +39,16 @@ class Plan:
     seeds: tuple = tuple(range(1, 9))
     crystal: int = 20_000
     settle: int = 3_000
-    long: int = 400_000
     blocks: int = 8
 
 
-QUICK = Plan((2.0,), 500.0, 200.0, seeds=(1, 2), crystal=2_000, settle=1_000, long=4_000, blocks=4)
-#: hours of computing
-FULL = Plan(time=30_000.0, crystal=200_000, blocks=20)
+QUICK = Plan((2.0,), 500.0, 200.0, seeds=(1, 2), crystal=2_000, settle=1_000, blocks=4)
 
 
 @dataclass(frozen=True)
 class Results:
     """``water``: (method, step, seed) -> columns of a run; ``crystal``: method -> columns; the key SHEARED has a crystal
-    that may shear, and SMALL a crystal of few dumbbells."""
+    that may shear."""
 
     plan: Plan
     water: dict
@@ -67,13 +64,6 @@ class Results:
         rates = [unit * slope(run["Time"], run["v_conserved"])[0] for run in runs]
         return float(np.mean(rates)), float(np.std(rates, ddof=1) / math.sqrt(len(rates)))
 
-    def shares(self):
-        """W times the mean square of each strain rate over kT in the small crystal, (3,); exact value 1 each."""
-        run, dumbbells = self.crystal[SMALL], 4 * FEW**3
-        mass = 3 * dumbbells * DUMBBELLS_KT * PDAMP**2 / 3
-        means = [mean_of_series([mass * run[f"f_move[{23 + k}]"] ** 2 / DUMBBELLS_KT], self.plan.blocks) for k in range(3)]
-        return gathered(means)
-
     def sheared(self):
         """All six components of the molecular pressure in the crystal that shears."""
         run = self.crystal[SHEARED]
@@ -84,10 +74,6 @@ class Results:
         measure contains the volume to the power -2."""
         per_volume = DUMBBELLS_KT / self.crystal[SHEARED]["Volume"].mean()
         return np.array([*TARGETS, SHEAR, 0.0, 0.0]) - per_volume * np.array([1.0, 0.0, -1.0, 0.0, 0.0, 0.0])
-
-    def share_of_box(self):
-        """Twice the kinetic energy of the box in the crystal over kT; exact value 3, for three degrees of freedom."""
-        return mean_of_series([2.0 * self.crystal[OURS]["f_move[26]"] / DUMBBELLS_KT], self.plan.blocks)
 
     def work(self):
         """Mean of (P_aa - P_a) V over kT in the crystal, (3,); exact value -1 each."""
@@ -118,7 +104,7 @@ def keep(finished):
 
 def measure(lab, plan=None):
     """Results."""
-    plan = plan or (QUICK if lab.quick else FULL if lab.full else Plan())
+    plan = plan or (QUICK if lab.quick else Plan())
 
     def sizes(variables):
         dt = variables["dt"]
@@ -127,13 +113,11 @@ def measure(lab, plan=None):
 
     axes = {"method": tuple(METHODS), "dt": plan.dts, "seed": plan.seeds}
     with lab.share(0.6):
-        water = lab.sweep("water", WATER, axes, keep, sizes, keep=True)
+        water = lab.sweep("water", WATER, axes, keep, sizes)
     settings = {"steps": plan.crystal, "equilibrate": plan.settle}
     with lab.share(0.4):
-        crystal = lab.sweep("crystal", CRYSTAL, {"method": (OURS, RIGID)}, keep, settings, keep=True)
-        further = {SHEARED: settings | {"pxy": SHEAR}, SMALL: settings | {"cells": FEW, "steps": plan.long, "pdamp": PDAMP}}
-        for name, words in further.items():
-            crystal[name] = lab.sweep(name, CRYSTAL, {"method": (OURS,)}, keep, words, keep=True)[OURS]
+        crystal = lab.sweep("crystal", CRYSTAL, {"method": (OURS, RIGID)}, keep, settings)
+        crystal[SHEARED] = lab.sweep(SHEARED, CRYSTAL, {"method": (OURS,)}, keep, settings | {"pxy": SHEAR})[OURS]
     return Results(plan, water, crystal)
 
 
@@ -159,13 +143,6 @@ def measurements(results):
     rows.append(Measurement("the same: `rigid/npt/small`", shift, least=most, **errors))
     shift, most = largest(results.work(), -1.0)
     rows.append(Measurement("crystal, largest deviation of a mean (P − P₀) V from −kT", shift, most=most, **errors))
-    shift, most = largest(results.share_of_box(), 3.0)
-    rows.append(Measurement("crystal, deviation of the box's kinetic energy from 3 kT/2", shift, most=most, **errors))
-    shares = results.shares()
-    shift, most = largest(shares, 1.0)
-    rows.append(Measurement("small crystal, largest deviation of a share of the box from kT/2", shift, most=most, **errors))
-    what = "the same as a fraction of kT/2"
-    rows.append(Measurement(what, float(np.abs(shares.value - 1.0).max()), float(shares.error.max()), ".3f"))
     shift, most = largest(results.sheared(), results.expected_sheared())
     what = "crystal under a shear stress, largest deviation of one of six components of the pressure"
     rows.append(Measurement(what, shift, most=most, **errors))
@@ -206,9 +183,7 @@ def shear_table(results):
 def find(results):
     """Finding of Results."""
     tables = {"water": water_table(results), "crystal": crystal_table(results), "shear": shear_table(results)}
-    context = {"plan": results.plan, "molecules": MOLECULES, "share": results.share_of_box()}
-    context |= {"shares": results.shares(), "few": 4 * FEW**3}
-    context["with_error"] = with_error
+    context = {"plan": results.plan, "molecules": MOLECULES}
     # for README
     drifts = {
         words: [with_error(*results.drift(m, dt), sign="+") for dt in results.plan.dts] for m, words in METHODS.items()

@@ -232,8 +232,7 @@ def measure(lab, session):
     if lab.quick:
         planned = [both for both in planned if both[0].key in QUICK]
     for scene, problem in planned:
-        accuracy = {"tolerance": TIGHT} if isinstance(problem.field, Center) else {}
-        reference = Reference.of(problem, scene.end, lab.out / "reference", **accuracy)
+        reference = Reference.of(problem, scene.end, TIGHT if isinstance(problem.field, Center) else None)
         with lab.share(1 / len(planned)):
             own = {FIXED: [peers.fixed(session, scene, reference)]} if scene.steps else {}
             own[TOLERANCE] = peers.controlled(session, scene, reference)

@@ -18,7 +18,7 @@ from benchmarks.studies.liquids import Plan as Starts
 from benchmarks.studies.liquids import equilibrate, template
 
 from .frames import read_motion
-from .plan import BATCH, EXTRAPOLATED, LONG, MODELS, OURS, QUICK, RIVAL, TARGETS, TEMPERATURE, Plan, Series
+from .plan import BATCH, EXTRAPOLATED, LONG, MODELS, QUICK, RIVAL, TARGETS, TEMPERATURE, Plan, Series
 
 FOLDER = Path(__file__).parent
 SAMPLES = FOLDER / "samples.csv"
@@ -107,7 +107,7 @@ def job(series, data, number, plan):
     every = round(1000 * plan.every / series.dt)
     steps = {name: every * math.ceil(1000 * length / (every * series.dt)) for name, length in plan.lengths(series).items()}
     variables = {"every": every, "frame": round(1000 * plan.frame / series.dt), "seed": number, **steps}
-    return Job(FOLDER / "in.water", _of_series(series, data) | variables, sum(steps.values()), plugin=series.method == OURS)
+    return Job(FOLDER / "in.water", _of_series(series, data) | variables, sum(steps.values()))
 
 
 def _of_series(series, data):
@@ -143,7 +143,7 @@ def trajectories(lab):
     """
     liquid = MODELS["tip4p"]
     variables = {"liquid": liquid.key, "pair": liquid.pair, "kspace": liquid.kspace, "temperature": TEMPERATURE}
-    lab.many({"lattice": Job(FOLDER / "in.lattice", variables | {"template": template(liquid), "seed": 4711}, 1, plugin=False)})
+    lab.many({"lattice": Job(FOLDER / "in.lattice", variables | {"template": template(liquid), "seed": 4711}, 1)})
     data = lab.dump("lattice").with_suffix(".data").resolve()
     told = {series.method: series for series in (LONG["tip4p"], EXTRAPOLATED[1], RIVAL)}
     steps = {"settle": 0, "steps": TOLD_AFTER, "every": TOLD_AFTER, "frame": TOLD_AFTER, "seed": 0}
@@ -187,7 +187,7 @@ def measure(lab, plan=None):
         models = [model for key, model in MODELS.items() if key in {series.model for series, _ in chosen}]
         data = equilibrate(lab, starts, [(model, sorted({number for _, number in chosen})) for model in models])
         jobs = {f"{series.name}_{n}": job(series, data[series.model, n], n, plan) for series, n in chosen}
-        finished = lab.many(jobs, keep=True)
+        finished = lab.many(jobs)
         for series, n in chosen:
             samples += read(finished[f"{series.name}_{n}"], series, n, (commit, told[series.method]), plan.blocks)
         if not lab.quick:
