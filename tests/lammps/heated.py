@@ -2,7 +2,7 @@
 
 import re
 
-from scenes import BEFORE, FORMULATIONS, MOLECULES, one_after_the_other, placed
+from scenes import BEFORE, MOLECULES, one_after_the_other, placed
 
 KINDS = ["total", "separate"]
 TEMP = "temp 0.5 0.5 0.3"
@@ -36,23 +36,3 @@ def continued(deck, file):
     """The deck with its atoms and potential from a restart file."""
     rest = re.sub("velocity all create.*", "", deck[deck.index("neigh_") :])
     return f"units lj\natom_modify sort 0 0.0\nread_restart {file}\n{rest}"
-
-
-def whole_and_halves(deck_of, first, second, span="", formulations=FORMULATIONS):
-    """A run, its two halves, and the second half from a restart file; span: text after the steps of a half.
-
-    ``deck_of(words, kind, commands)`` makes a deck. Returns decks, and a name for every three; the final
-    atoms are in NAME-whole.end, NAME-halves.end and NAME-again.end.
-    """
-    decks, names = [], []
-    for formulation in formulations:
-        for kind in KINDS:
-            name = f"{formulation}-{kind}"
-            names.append(name)
-            halves = f"run {first} {span}\nwrite_restart {name}.half\nrun {second} {span}"
-            parts = {"whole": f"run {first + second}", "halves": halves, "again": f"run {second} {span}"}
-            for part, commands in parts.items():
-                words = f"formulation {formulation} thermostat {kind}" if formulation else f"thermostat {kind}"
-                deck = deck_of(words, kind, f"{commands}\n{END.format(f'{name}-{part}')}")
-                decks.append(continued(deck, f"{name}.half") if part == "again" else deck)
-    return decks, names

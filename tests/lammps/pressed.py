@@ -101,6 +101,15 @@ def ends(lmp, decks: list[str], ranks: int = 1):
     return result, frames
 
 
+def apart(one, other):
+    """Largest difference of positions and velocities of two frames; an atom may be at either face of the box."""
+    changed = np.abs(one - other)[:, :6]
+    wrapped = changed[:, :3] > 1.0
+    assert wrapped.sum() < 4
+    changed[:, :3][wrapped] = 0.0
+    return changed.max()
+
+
 def distances(rows: np.ndarray, box: np.ndarray) -> np.ndarray:
     """Distances between the sites of each trimer in a frame, with these edges of the box."""
     sites = (rows[:, :3] + rows[:, 6:9] * box).reshape(-1, 3, 3)

@@ -34,7 +34,7 @@ def flight(tables):
     return step, rows[:, :3] + LENGTH * rows[:, 3:]
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("formulation, ranks", [("momentum", 2), ("first", 1)])
 def test_a_body_flies_on(lmp_tree, formulation, ranks):
     result = run(lmp_tree, f"molecule formulation {formulation}", "run 8000", ranks)
     step, centre = flight(result.thermo)

@@ -91,28 +91,6 @@ def test_points_have_one_multiplier(lmp_tree):
 # --- runs, restart ---------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_restart_and_halves_bit_for_bit(lmp_tree, ranks):
-    decks = []
-    for mode in MODES:
-        for name, commands in {
-            f"{mode}-whole": "run 100",
-            f"{mode}-halves": f"run 50\nwrite_restart {mode}.half\nrun 50",
-            f"{mode}-again": "run 50",
-        }.items():
-            words = f"isokinetic {mode} passes 1" if ranks == 2 else f"isokinetic {mode}"
-            deck = cluster(words, every=50, run=f"{commands}\n{END.format(name)}")
-            decks.append(continued(deck, f"{mode}.half") if name.endswith("again") else deck)
-    tables = run(lmp_tree, decks, ranks).thermo
-    ends = {path.stem: path.read_text() for path in lmp_tree.folder.glob("*.end")}
-    for n, mode in enumerate(MODES):
-        assert ends[f"{mode}-whole"] == ends[f"{mode}-halves"] == ends[f"{mode}-again"]
-        whole, _, half, again = tables[4 * n : 4 * n + 4]
-        for column in ("f_move[9]", "v_k"):  # heat continues
-            assert whole[column][-1] == half[column][-1] == again[column][-1], column
-    assert ends["total-whole"] != ends["separate-whole"]
-
-
 def test_another_constraint_after_a_restart_begins_anew(lmp_tree):
     first = cluster("isokinetic total", run="run 50\nwrite_restart half\nrun 0")
     others = [

@@ -97,8 +97,7 @@ FORCES = {
 }
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("kind", FORCES)
+@pytest.mark.parametrize("kind, ranks", [*((kind, 1) for kind in FORCES), ("pppm", 2), ("wall/region", 2)])
 def test_every_force_counts(box, kind, ranks):
     """The motion agrees with fix rigid/nve/small at a tiny step; a force that is 1 % stronger is detected.
 
@@ -146,12 +145,11 @@ def test_a_drag_on_every_site_stops_the_whole(box, fix, kind):
     assert after != pytest.approx(1.01 * exact, rel=1e-5)
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_what_pulls_the_whole_is_its_momentum(box, fix, ranks):
+def test_what_pulls_the_whole_is_its_momentum(box, fix):
     """Gravity and a constant force on the sites of some bodies: this sum is exact for any step."""
     pull = "fix g all gravity 0.5 vector 0 0 -1\nfix a bodies addforce 0.1 -0.2 0.3"
     deck = box.deck("end", fix, dt=1.0, steps=100, before=BODIES + pull)
-    box.run(deck, ranks=ranks)
+    box.run(deck)
     gained = MASS @ box.end("end")[:, 4:7] - MASS @ box.start()
     force = 14 * 3 * FTM2V * np.array([0.1, -0.2, 0.3])
     exact = 100.0 * (force + [0, 0, -0.5 * FTM2V * MASS.sum()])
@@ -200,14 +198,14 @@ set group others charge 0.0
 @pytest.fixture(params=SOLVENT)
 def solution(request, box):
     """Half of the molecules are rigid; the others are flexible, or single atoms, and moved by fix nve."""
+    box.ranks = 4 if request.param == "flexible" else 1
     if request.param == "flexible":
         box.data = with_bonds(box.data)
     box.before = SOLVENT[request.param] + "\nfix others others nve\n"
     return box
 
 
-@pytest.mark.parametrize("ranks", [1, 4])
-def test_bodies_and_solvent_move_each_other(solution, ranks):
+def test_bodies_and_solvent_move_each_other(solution):
     """The motion agrees with fix rigid/nve/small at a tiny step; without the forces between the two kinds it
     differs."""
     apart = "neigh_modify exclude group bodies others\n"
@@ -217,7 +215,7 @@ def test_bodies_and_solvent_move_each_other(solution, ranks):
         *(solution.deck(f, OURS + f, **common) for f in FORMULATIONS),
         solution.deck("apart", OURS + "second", "bodies", before=solution.before + apart),
         solution.deck("stronger", OURS + "second", replace=STRONGER, **common),
-        ranks=ranks,
+        ranks=solution.ranks,
     )
     bodies = solution.end("rigid")[:, 0] <= 3 * 14
     for atoms in (bodies, ~bodies):
@@ -280,10 +278,9 @@ def test_momentum_and_energy_of_a_solution(solution, fix):
 # --- several fixes ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_two_fixes_are_one(box, fix, ranks):
+def test_two_fixes_are_one(box, formulation):
     """Motion, temperature and pressure are the same; a sum over all bodies is the sum of both fixes."""
-    fix = f"{fix} start zero"
+    fix, ranks = f"{OURS}{formulation} start zero", 2 if formulation == "momentum" else 1
     sums, both = "f_move[1] f_move[2]", "f_move[1] f_move[2] f_rest[1] f_rest[2]"
     two = f"fix rest others {fix}\nfix_modify rest energy yes\n"
     settings = dict(dt=0.2, steps=200, thermo=50)
@@ -305,8 +302,7 @@ def test_two_fixes_are_one(box, fix, ranks):
     assert box.difference("one", "slower") > 1e-4
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("beside", [OURS + "first", RIGID])
+@pytest.mark.parametrize("beside, ranks", [(OURS + "first", 2), (RIGID, 1)])
 def test_another_rigid_fix_beside(box, beside, ranks):
     """The other fix has the other formulation, or is rigid/nve/small: the motion is as if rigid/nve/small moved all
     bodies."""

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 import pressed as scene
-from pressed import REPULSIVE, ends, trimers
+from pressed import REPULSIVE, apart, ends, trimers
 from scenes import FORMULATIONS, largest_change, one_after_the_other
 
 MODES = {
@@ -39,55 +39,12 @@ def run(lmp, decks, ranks=1):
     return result, [whole(lmp.folder, f"end{k}.dump") for k in range(len(decks))]
 
 
-def apart(one, other):
-    """Largest difference of positions and velocities; an atom may be at either face of the box."""
-    changed = np.abs(one - other)[:, :6]
-    wrapped = changed[:, :3] > 1.0
-    assert wrapped.sum() < 4
-    changed[:, :3][wrapped] = 0.0
-    return changed.max()
-
-
 def continued(deck, file):
     """A deck that reads a restart file instead of the data."""
     return deck.replace("read_data data.trimers", f"read_restart {file}")
 
 
 # --- restarts -----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("ranks", [1, 2, 4])
-def test_a_restart_in_the_middle_of_a_run(lmp_tree, ranks):
-    """Bit for bit: continued from a file of command restart, written during a run, and from write_restart."""
-    decks, lost = [], []
-    # the grid of ranks that LAMMPS chooses depends on the edges
-    ordered = {"processors": "1 1 *"}
-    for formulation in FORMULATIONS:
-        for name, mode in MODES.items():
-            words, at = f"formulation {formulation} {mode}", f"{formulation}.{name}"
-            decks.append(pressed(words, run=f"restart 50 {at}.on.*\nrun 100 {SPAN}", **ordered))
-            # this also determines the steps with new neighbor lists
-            rest = f"restart 50 {at}.then.*\nrun 50 {SPAN}"
-            decks.append(continued(pressed(words, run=rest, **ordered), f"{at}.on.50"))
-            halves = f"run 50 {SPAN}\nwrite_restart {at}.half\nrun 50 {SPAN}"
-            decks.append(pressed(words, run=halves, **ordered))
-            decks.append(continued(pressed(words, run=f"run 50 {SPAN}", **ordered), f"{at}.half"))
-            lost.append(continued(pressed(words, run=f"run 50 {SPAN}", **ordered), f"{at}.half").replace("move", "other"))
-    result, found = ends(lmp_tree, decks, ranks)
-    for k in range(0, len(decks), 2):
-        # an atom at a face may have another image flag
-        assert apart(found[k], found[k + 1]) == 0.0, decks[k + 1]
-    tables = result.thermo
-    assert len(tables) == 5 * len(MODES) * len(FORMULATIONS)
-    for k in range(0, len(tables), 5):
-        before, after = tables[k], tables[k + 1]
-        for column in ("Econserve", "f_move[9]", "f_move[15]", "f_move[22]", "f_move[26]", "f_move[27]"):
-            assert before[column][5:] == pytest.approx(after[column][-6:], rel=1e-12, abs=1e-13), column
-    if ranks > 1:
-        return
-    # without its histories and the rate of the box the motion differs
-    _, without = ends(lmp_tree, lost)
-    assert all(apart(a, b) > 1e-10 for a, b in zip(without, found[3::4]))
 
 
 @pytest.mark.parametrize("processors, same", [("1 1 *", True), ("* * *", False)])
@@ -114,19 +71,6 @@ def test_what_a_restart_file_does_not_fit(lmp_tree):
 
 
 # --- ranks and images ---------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("ranks", [2, 4])
-def test_ranks_agree(lmp_tree, ranks):
-    """Motion, edges and conserved energy agree to 1e-10 over 100 steps."""
-    decks = [pressed(f"formulation {f} {mode}") for f in FORMULATIONS for mode in MODES.values()]
-    alone, one = ends(lmp_tree, decks)
-    result, many = ends(lmp_tree, decks, ranks)
-    for a, b in zip(one, many):
-        assert apart(a, b) < 1e-10
-    for a, b in zip(alone.thermo, result.thermo):
-        for column in ("Lx", "Ly", "Volume", "Econserve", "f_move[15]"):
-            assert a[column] == pytest.approx(b[column], rel=1e-10, abs=1e-10), column
 
 
 @pytest.mark.parametrize("mode", ["NVE", *MODES])

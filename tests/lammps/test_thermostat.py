@@ -7,8 +7,8 @@ import re
 
 import numpy as np
 import pytest
-from scenes import MOLECULES, difference, largest_change, last_frame, one_after_the_other, water, water_data
-from heated import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued, run, whole_and_halves
+from scenes import MOLECULES, largest_change, last_frame
+from heated import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued, run
 
 
 def order(steps, errors):
@@ -204,32 +204,6 @@ def test_a_body_is_taken_away(lmp_tree):
     freedoms = (2 * np.array(table["f_move[1]"]) - table["v_common"]) / table["f_move[10]"]
     assert freedoms == pytest.approx(6.0)
     assert min(table["v_common"]) > 1e-2
-
-
-@pytest.mark.parametrize("ranks", [1, 2, 4])
-def test_restart_and_halves_bit_for_bit(lmp_tree, ranks):
-    def deck_of(words, kind, commands):
-        chain = f"temp 0.4 0.8 0.3 tchain {3 if kind == 'total' else 2}"
-        return cluster(f"{words} {chain}", every=50, run=commands)
-
-    decks, names = whole_and_halves(deck_of, 50, 50, "start 0 stop 100")
-    result = run(lmp_tree, decks, ranks)
-    ends = {path.stem: path.read_text() for path in lmp_tree.folder.glob("*.end")}
-    for n, name in enumerate(names):
-        assert ends[f"{name}-whole"] == ends[f"{name}-halves"] == ends[f"{name}-again"], name
-        whole, _, half, again = result.thermo[4 * n : 4 * n + 4]
-        for column in ("f_move[9]", "f_move[13]", "Econserve"):
-            assert whole[column][-1] == half[column][-1] == again[column][-1], column
-    assert len({ends[f"{name}-whole"] for name in names}) == len(names)
-    assert "another target" not in result.log
-
-
-def test_ranks(lmp_tree):
-    ends, deck = [], cluster(f"{TEMP} thermostat separate", run="run 100\n" + END.format("a"))
-    for ranks in (1, 2, 4):
-        run(lmp_tree, [deck], ranks)
-        ends.append(last_frame(lmp_tree.folder / "a.end"))
-    assert max(np.abs(end - ends[0]).max() for end in ends) < 1e-11
 
 
 def test_another_thermostat_after_a_restart_begins_anew(lmp_tree):

@@ -49,8 +49,7 @@ def change(table):
     return np.ptp(conserved) / max(np.max(taken), table["KinEng"][0])
 
 
-@pytest.mark.parametrize("target", [0.2, 0.8, 1.2, 1.5, 10.0])
-@pytest.mark.parametrize("kind", ["total", "separate"])
+@pytest.mark.parametrize("kind, target", [("total", 0.2), ("separate", 1.5), ("total", 10.0)])
 def test_many_molecules_reach_a_target(lmp_tree, gas, kind, target):
     words = f"temp {target} {target} 1.0 thermostat {kind}"
     (table,) = lmp_tree.succeed(gas(words, n=16, run="run 500")).thermo
@@ -61,7 +60,7 @@ def test_many_molecules_reach_a_target(lmp_tree, gas, kind, target):
     assert degrees == pytest.approx(target, rel=0.15) if target < 2.0 else degrees > 3.0
 
 
-@pytest.mark.parametrize("length", [1, 2, 4, 10])
+@pytest.mark.parametrize("length", [1, 10])
 def test_any_length_and_few_steps_of_damping(lmp_tree, gas, formulation, length):
     decks = [
         gas(f"formulation {formulation} temp {target} {target} {damp} tchain {length}")
@@ -206,7 +205,7 @@ def covering(seed=1):
 
 SAMPLE = covering()
 #: GEARQUAT_CHAINS=all runs the whole sample, and prints the results with -rP
-CHOSEN = range(len(SAMPLE)) if os.environ.get("GEARQUAT_CHAINS") == "all" else (3, 11, 19, 27)
+CHOSEN = range(len(SAMPLE)) if os.environ.get("GEARQUAT_CHAINS") == "all" else (11, 27)
 
 
 @pytest.mark.parametrize("number", CHOSEN)

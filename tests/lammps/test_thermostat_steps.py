@@ -14,7 +14,7 @@ from scenes import (
 )
 from scipy.integrate import solve_ivp
 from inserted import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
-from heated import COMMON, END, KINDS, cluster, continued, whole_and_halves
+from heated import COMMON, END, KINDS, cluster, continued
 from stepped import ELEMENTS, LARGEST, LOADS, NEXT, REPEATED, agree_on_ranks, tables
 
 TEMP = "temp 0.5 0.5 0.3"
@@ -70,25 +70,6 @@ def test_a_step_made_again_leaves_the_chains_as_if_met_at_once(lmp_tree):
     for column in (TAKEN, XI):
         assert repeated[column][-1] == pytest.approx(at_once[column][-1], rel=1e-11, abs=1e-13)
         assert repeated[column][-1] != pytest.approx(repeated[column][-2], rel=1e-6, abs=0)
-
-
-@pytest.mark.parametrize("ranks", [1, 2, 4])
-def test_restart_and_halves_bit_for_bit(lmp_tree, ranks):
-    """On several ranks a second run sums forces in another order than one long run."""
-    decks, names = whole_and_halves(
-        lambda words, _, commands: changing(f"{words} {TEMP}", "1e-9", commands), 40, 60, formulations=[None]
-    )
-    result = lmp_tree.succeed(one_after_the_other(decks), ranks=ranks)
-    ends = {path.stem: path.read_text() for path in lmp_tree.folder.glob("*.end")}
-    for n, name in enumerate(names):
-        assert ends[f"{name}-halves"] == ends[f"{name}-again"], name
-        whole, first, half, again = result.thermo[4 * n : 4 * n + 4]
-        for column in (TAKEN, XI, NEXT, LOADS, REPEATED, "Econserve"):
-            assert half[column][-1] == again[column][-1], column
-            assert ranks > 1 or whole[column][-1] == half[column][-1], column
-        assert ranks > 1 or ends[f"{name}-whole"] == ends[f"{name}-halves"]
-        assert again[REPEATED][-1] > first[REPEATED][-1]
-    assert len({ends[f"{name}-again"] for name in names}) == len(names)
 
 
 def test_a_restart_at_times_of_output_bit_for_bit(lmp_tree):

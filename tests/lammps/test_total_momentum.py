@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from running import EXAMPLES
 from scenes import largest_change, last_frame, one_after_the_other
-from heated import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued
+from heated import COLUMNS, COMMON, END, KINDS, TEMP, cluster
 from stepped import tables
 
 DUMBBELL = """d
