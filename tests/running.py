@@ -139,7 +139,7 @@ def answer(library: str, launcher: tuple[str, ...], ranks: int, timeout: float, 
     except LammpsError as error:
         if str(error).startswith(NOT_FINISHED):
             raise subprocess.TimeoutExpired(asked["deck"], timeout) from None
-        if str(error).startswith("ERROR on proc"):
+        if "ERROR on proc" in str(error):
             return ABORTED
         if str(error).startswith(ENDED):
             return -1

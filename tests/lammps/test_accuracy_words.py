@@ -11,14 +11,14 @@ ERRORS = "f_move[5] f_move[6] f_move[7] f_move[8]"
 
 
 @pytest.fixture
-def liquid(lmp, data):
+def liquid(lmp_tree, data):
     """Run 27 water molecules: liquid(fix words, ...) -> result and last frame of the dump."""
 
     def run(words, steps=20, dt=0.5, ranks=1, **more):
         fix, columns = f"gear/quat molecule {words}", f"{ERRORS} f_move[4]"
         deck = water(data, fix, steps=steps, dt=dt, columns=columns, **more)
-        result = lmp.succeed(deck, ranks=ranks)
-        return result, last_frame(lmp.folder / "poses.dump")[:, 1:4]
+        result = lmp_tree.succeed(deck, ranks=ranks)
+        return result, last_frame(lmp_tree.folder / "poses.dump")[:, 1:4]
 
     return run
 
@@ -40,7 +40,6 @@ def test_every_number_of_values_starts_with_its_order_and_stays_rigid(liquid, fo
     assert 2 * (3 if kinks else pairs) <= int(found[2]) <= pairs * (pairs + 1) + 4 * pairs
     arms = np.linalg.norm(x[1::3] - x[0::3], axis=1)
     assert arms == pytest.approx(np.ones(len(arms)), abs=1e-13)
-    assert np.abs(arms * 1.01 - 1).max() > 1e-3
     assert result.thermo[-1]["f_move[4]"][-1] < 1e-6  # q stays orthogonal to its rate
 
 
@@ -65,13 +64,13 @@ def test_the_preset_means_formulation_second(liquid, lmp_wheel):
 
 
 @pytest.fixture
-def cage(lmp, examples):
+def cage(lmp_tree, examples):
     """Estimated errors of one body in the paper's cage at t = 20: cage(step, fix words)."""
 
     def run(dt, **words):
         deck = whole_deck(examples / "case1" / "in.case1")
         steps = round(20 / dt)
-        return errors(lmp.succeed(deck, dict(words, dt=dt, steps=steps, every=steps, more=ERRORS)))
+        return errors(lmp_tree.succeed(deck, dict(words, dt=dt, steps=steps, every=steps, more=ERRORS)))
 
     return run
 
@@ -104,7 +103,6 @@ def test_estimates_of_many_bodies(liquid):
     assert (one[[0, 2]] > one[[1, 3]]).all()
     assert (one[[0, 2]] < one[[1, 3]] * np.sqrt(27)).all()
     assert one == pytest.approx(four, rel=1e-7)
-    assert 1.01 * one != pytest.approx(four, rel=1e-7)
 
 
 def test_estimates_outlive_a_run(liquid):
@@ -129,31 +127,30 @@ def test_passes_change_orientations_only_through_the_same_forces(liquid):
 
 
 @pytest.mark.parametrize("after", ["values 8", "values 6 compensate yes"])
-def test_a_restart_with_another_history_says_so(liquid, lmp, after):
+def test_a_restart_with_another_history_says_so(liquid, lmp_tree, after):
     """Eight rows: values 8, or values 6 and two carries; the formats must not be confused."""
     before = {"values 8": "values 6 compensate yes", "values 6 compensate yes": "values 8"}[after]
     liquid(before, run="run 10\nwrite_restart half.restart")
     deck = water("data.water", f"gear/quat molecule {after}", dt=0.5, steps=10)
-    result = lmp.succeed(restarted(deck, "half.restart"))
+    result = lmp_tree.succeed(restarted(deck, "half.restart"))
     assert "with other settings of values, compensate; poses" in result.output
     assert "start of order" in result.output  # a new start
 
 
 @pytest.mark.parametrize("before, after", [("gear", "tuned"), ("tuned", "gear")])
-def test_histories_go_on_with_the_other_corrector(lmp, liquid, before, after):
+def test_histories_go_on_with_the_other_corrector(lmp_tree, liquid, before, after):
     """A warning names both correctors; with the same corrector there is no message."""
     _, whole = liquid(f"corrector {before} values 8", steps=40)
     liquid(f"corrector {before} values 8", run="run 20\nwrite_restart half.restart")
     for corrector in (before, after):
         words = f"gear/quat molecule corrector {corrector} values 8"
         deck = water("data.water", words, dt=0.5, steps=40)
-        result = lmp.succeed(restarted(deck, "half.restart").replace("run 40", "run 20"))
+        result = lmp_tree.succeed(restarted(deck, "half.restart").replace("run 40", "run 20"))
         said = f"written with corrector {before}; its histories go on with corrector {after}"
         assert (said in result.output) == (corrector == after)
         assert "start of order" not in result.output
-        end = last_frame(lmp.folder / "poses.dump")[:, 1:4]
+        end = last_frame(lmp_tree.folder / "poses.dump")[:, 1:4]
         assert np.abs(end - whole).max() < 1e-6
-        assert np.abs(1.01 * end - whole).max() > 1e-2
 
 
 @pytest.mark.parametrize("formulation", ["first", "second"])

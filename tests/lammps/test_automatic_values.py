@@ -179,7 +179,6 @@ def test_a_body_in_a_dpd_fluid(lmp_wheel):
         for two in (result.thermo[:2], result.thermo[2:])
     )
     assert ours[0] == pytest.approx(rigid[0], rel=1e-4) and ours[0][-1] < 0.3 * ours[0][0]
-    assert ours[0] != pytest.approx(1.01 * rigid[0], rel=1e-4)
     assert np.ptp(ours[1]) < 1e-12 * ours[1][0]
 
 

@@ -262,9 +262,9 @@ def test_infile(lmp_wheel, text):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("name", SCENES)
-def test_scene(lmp, name, ranks):
+def test_scene(lmp_tree, name, ranks):
     before, after, message = SCENES[name]
-    lmp.refuse(two_molecules(before=before, after=after), message, ranks=ranks)
+    lmp_tree.refuse(two_molecules(before=before, after=after), message, ranks=ranks)
 
 
 # keywords besides temp 1 1 0.1, before the fix, after it, message
@@ -401,42 +401,42 @@ def test_out_of_the_plane(lmp_tree, words):
     lmp_tree.refuse(deck, "has to be off in a 2d simulation", ranks=2)
 
 
-def test_empty_group(lmp):
+def test_empty_group(lmp_tree):
     deck = two_molecules().replace("fix move all", "group nobody empty\nfix move nobody")
-    lmp.refuse(deck, "no atom of the fix group is in a body")
+    lmp_tree.refuse(deck, "no atom of the fix group is in a body")
 
 
-def test_dynamic_group(lmp):
+def test_dynamic_group(lmp_tree):
     group = "region some block -5 5 -5 5 -5 5\ngroup some {words}\nfix move some"
     deck = two_molecules().replace("fix move all", group)
-    lmp.refuse(deck.format(words="dynamic all region some every 1"), "group some is dynamic, but bodies keep their atoms")
-    lmp.succeed(deck.format(words="region some"))
+    lmp_tree.refuse(deck.format(words="dynamic all region some every 1"), "group some is dynamic, but bodies keep their atoms")
+    lmp_tree.succeed(deck.format(words="region some"))
 
 
-def test_group_that_becomes_dynamic(lmp):
+def test_group_that_becomes_dynamic(lmp_tree):
     """LAMMPS refuses it, because the fix does not declare support: bodies do not change their atoms."""
     after = "variable some atom x<100\ngroup some dynamic all var some every 1\nrun 1"
     deck = two_molecules(after=after).replace("fix move all", "group some id 1:6\nfix move some")
-    lmp.refuse(deck, "does not allow use with a dynamic group")
+    lmp_tree.refuse(deck, "does not allow use with a dynamic group")
 
 
-def test_no_atom_map(lmp):
+def test_no_atom_map(lmp_tree):
     deck = two_molecules("single").replace("atom_style molecular", "atom_style atomic")
     deck = re.sub("atom_modify map array|set atom .* mol .", "", deck)
-    lmp.refuse(deck, "requires an atom map: write atom_modify map yes before the box")
+    lmp_tree.refuse(deck, "requires an atom map: write atom_modify map yes before the box")
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize(
     "words", ["molecule", "single", "group 2 left right", "custom v_half", "custom i_which"]
 )
-def test_good_arguments_are_not_refused(lmp, words, ranks):
+def test_good_arguments_are_not_refused(lmp_tree, words, ranks):
     before = GROUPS + """
 variable half atom (id>3)*5-2
 fix which all property/atom i_which
 set group left i_which -7
 set group right i_which 4
 """
-    result = lmp.succeed(two_molecules(words, before=before), ranks=ranks)
+    result = lmp_tree.succeed(two_molecules(words, before=before), ranks=ranks)
     bodies = 1 if words == "single" else 2
     assert f"{bodies} rigid bodies with 6 atoms" in result.stdout

@@ -71,10 +71,10 @@ def test_an_absurd_force(lmp_tree, name, ranks):
 
 
 @pytest.mark.parametrize("style", ["", "run_style respa 2 1 pair 1"])
-def test_in_every_way_to_run(lmp, style):
+def test_in_every_way_to_run(lmp_tree, style):
     for words in ("formulation first start bootstrap", "start zero", "formulation second passes 1"):
         deck = pushed(TOO_MUCH, style=style, fix=f"molecule {words}")
-        assert blow_up(lmp, deck)[0][:3] == ("5", "0.05", "2")
+        assert blow_up(lmp_tree, deck)[0][:3] == ("5", "0.05", "2")
 
 
 @pytest.mark.parametrize("start, ranks", [("zero", 1), ("bootstrap", 2)])

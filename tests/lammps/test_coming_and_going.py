@@ -113,17 +113,17 @@ def test_two_bodies_broken_at_once(lmp_tree):
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_molecules_deleted_between_runs(lmp, ranks):
+def test_molecules_deleted_between_runs(lmp_tree, ranks):
     delete = "group gone molecule 1 9 27\ndelete_atoms group gone compress no"
     commands = show(20, rows=[24]) + f"run 20\n{delete}\nrun 20"
-    result = lmp.succeed(liquid(lmp, commands), ranks=ranks)
+    result = lmp_tree.succeed(liquid(lmp_tree, commands), ranks=ranks)
     expect_temperature(result.thermo[0], -1, N)
     for row in (0, 1):
         expect_temperature(result.thermo[1], row, N - 3)
         assert result.thermo[1]["f_move[24][28]"][row] == 26
     # the other bodies have not changed, so they keep their histories
     assert "atoms were changed" not in result.stdout
-    assert len(ids(lmp)[-1]) == N - 3
+    assert len(ids(lmp_tree)[-1]) == N - 3
 
 
 # Dumbbells of an atomic system; body 3 is removed.

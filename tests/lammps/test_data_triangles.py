@@ -94,7 +94,6 @@ def test_the_motion_is_that_of_equivalent_points(lmp_tree, shift, formulation):
         return end(lmp_tree, text)[0, 1:7]
 
     assert np.abs(sized - of_points(1.0)).max() < 1e-10
-    assert np.abs(sized - of_points(1.01)).max() > 1e-4
 
 
 @AT
@@ -110,10 +109,8 @@ def test_corners_and_angular_momenta_follow_the_body(lmp_tree, shift):
         arms = one[10:16].reshape(2, 3) - one[1:4]
         expected = (own[:2] - own.mean(axis=0)) @ turn.T
         assert np.abs(arms - expected).max() < 1e-12
-        assert np.abs(arms - 1.01 * expected).max() > 1e-3
         momentum = turn @ atom.inertia @ turn.T @ omega_space
         assert one[7:10] == pytest.approx(momentum, abs=1e-12)
-        assert one[7:10] != pytest.approx(1.01 * momentum, abs=1e-4)
 
 
 def test_a_body_continues_from_run_to_run(lmp_tree):
@@ -127,8 +124,7 @@ def test_a_body_continues_from_run_to_run(lmp_tree):
 EQUILATERAL = np.array([CORNERS[0], [(0.0, 1.0, 1.0), (1.0, 0.0, 1.0), (1.0, 1.0, 0.0)]])
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("corners", [CORNERS, EQUILATERAL], ids=["scalene", "equilateral"])
+@pytest.mark.parametrize("corners, ranks", [(CORNERS, 1), (EQUILATERAL, 2)], ids=["scalene", "equilateral"])
 def test_restart_is_exact(lmp_tree, corners, ranks, formulation):
     fix = f"single formulation {formulation}"
     halves = "run 20\nwrite_restart half\nrun 20"

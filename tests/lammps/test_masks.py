@@ -47,7 +47,6 @@ def test_a_held_body_spins_as_a_pendulum(lmp_tree, formulation):
     exact = held_rotor(4.0)
     end, table = rotor(lmp_tree, formulation)
     assert np.abs(end - exact).max() < 1e-11
-    assert np.abs(end - held_rotor(4.0 * 1.01)).max() > 1e-3
     # masked components are constant to rounding of the atoms' positions
     assert np.abs(end[4:, :3] - exact[4:, :3]).max() < 1e-15 and np.abs(end[:4, 2]).max() < 1e-15
     assert table["TotEng"][-1] == pytest.approx(table["TotEng"][0], abs=1e-12)
@@ -60,7 +59,6 @@ def test_with_a_step_that_follows_the_error(lmp_tree):
     time = table["Time"][-1]
     assert time > 2 * 4.0  # the step has grown
     assert np.abs(end - held_rotor(time)).max() < 1e-10
-    assert np.abs(end - held_rotor(1.01 * time)).max() > 1e-3
 
 
 @pytest.mark.parametrize("formulation, values", [("first", 5), ("second", 6)])
@@ -220,7 +218,6 @@ def test_what_holds_a_body_is_outside_of_it(lmp_tree):
         virial = (rows[:, :3] * rows[:, 6:9]).sum()
         expected = (2 * thermo["f_move[1]"] + virial) * PRESSURE / (3 * thermo["Volume"])
         assert thermo["Press"] == pytest.approx(expected, rel=1e-7)
-        assert thermo["Press"] != pytest.approx(expected * 1.01, rel=1e-7)
         pressures.append(thermo["Press"])
     assert pressures[0] == pytest.approx(pressures[1], rel=1e-12)
 

@@ -116,7 +116,6 @@ def test_gradient(lmp_wheel):
     slopes = -energies @ [1.0, -8.0, 8.0, -1.0] / (12 * h)
     known = np.concatenate([load[first] for load in loads(x, f)])
     assert np.abs(slopes - known).max() < 1e-8 * np.abs(known).max()
-    assert np.abs(slopes - 1.01 * known).max() > 1e-3 * np.abs(known).max()
 
 
 def test_velocities_go_with_the_bodies(lmp_wheel):

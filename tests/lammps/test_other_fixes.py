@@ -246,12 +246,12 @@ def test_isokinetic_and_momentum(lmp_wheel, mode):
 
 
 # --- watched --------------------------------------------------------------
-def test_reflecting_walls(lmp):
+def test_reflecting_walls(lmp_tree):
     """The run ends in the step that moves an atom of a body."""
     fix = "fix wall all wall/reflect xlo -9.0 xhi {}\nvelocity all set 1.0 0 0\nrun {}"
-    lmp.succeed(two_molecules(after=fix.format(9.0, 50), boundary="f p p"))
+    lmp_tree.succeed(two_molecules(after=fix.format(9.0, 50), boundary="f p p"))
     near = two_molecules(after=fix.format(6.2, 50), boundary="f p p")
-    lmp.refuse(near, "fix wall (wall/reflect) has moved atom 5 of body 2 in step", ranks=2)
+    lmp_tree.refuse(near, "fix wall (wall/reflect) has moved atom 5 of body 2 in step", ranks=2)
 
 
 @pytest.mark.parametrize("words", ["values 9", "corrector gear values 8", "formulation first corrector gear values 8"])
@@ -275,7 +275,6 @@ def test_velocities_fade_as_the_friction_says(lmp_wheel, part, words, error):
     after += "\nthermo_modify format float %.17g"
     ours = lmp_wheel.succeed(two_molecules(f"molecule {words}", after=after)).thermo[-1]["Temp"]
     assert ours[-1] / ours[0] == pytest.approx(math.exp(-20 * part), rel=error)
-    assert ours[-1] / ours[0] != pytest.approx(1.03 * math.exp(-20 * part), rel=error)
 
 
 SRD = """

@@ -18,10 +18,10 @@ thermo_modify norm no
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_temperature_of_parts(lmp, ranks):
+def test_temperature_of_parts(lmp_tree, ranks):
     """One warning for each group with parts of bodies, also in several runs; none for groups of whole bodies."""
-    text = water(water_data(lmp.folder / "data.water"), "gear/quat molecule", steps=1, before=GROUPS)
+    text = water(water_data(lmp_tree.folder / "data.water"), "gear/quat molecule", steps=1, before=GROUPS)
     text = text.replace("fix_modify move energy yes\n", TEMPERATURES)
-    told = lmp.succeed(text + "\nrun 1", ranks=ranks).words
+    told = lmp_tree.succeed(text + "\nrun 1", ranks=ranks).words
     found = re.findall(r"temperature of group (\w+), which has only some atoms of bodies such as \d+", told)
     assert sorted(found) == ["hydrogens", "oxygens"]

@@ -24,7 +24,6 @@ def test_a_point_in_a_spring(lmp_tree, fix):
     end, table = free(lmp_tree, x, v, fix, 2000, 0.001, before=spring)
     exact = x + v * np.sin(2.0 * 2.0) / 2.0
     assert np.abs(end[:, :3] - exact).max() < 1e-11
-    assert np.abs(end[:, :3] - exact * 1.01).max() > 1e-4
     assert table["f_move[2]"] == [0.0, 0.0]
     energy = 0.5 * ((v * np.cos(2.0 * 2.0)) ** 2).sum()
     assert table["f_move[1]"][-1] == pytest.approx(energy, rel=1e-10)
@@ -39,13 +38,12 @@ def test_a_linear_body_turns_about_two_axes(lmp_tree, fix, sites):
     end, table = free(lmp_tree, np.outer(arms, axis), velocities, fix, 1000, 0.002)
     exact = drift * t + np.outer(arms, np.cos(spin * t) * axis + np.sin(spin * t) * sideways)
     assert np.abs(end[:, :3] - exact).max() < 1e-11
-    assert np.abs(end[:, :3] - exact * 1.01).max() > 1e-4
     total = np.add(table["f_move[1]"], table["f_move[2]"])
     assert total == pytest.approx(table["KinEng"], rel=1e-12)
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_atoms_in_no_body_are_left_alone(lmp, ranks):
+def test_atoms_in_no_body_are_left_alone(lmp_tree, ranks):
     """Atoms outside of the fix group, or in it but in none of the listed groups, do not change in any bit."""
     before = "group left id 1 2 3\ngroup some id 1 2 3 4 5"
     after = """
@@ -55,8 +53,8 @@ run 50
 """
     deck = two_molecules("group 1 left", before, after).replace("fix move all", "fix move some")
     forces = "pair_style lj/cut 9.0\npair_coeff * * 1.0 1.0"
-    lmp.succeed(deck.replace("pair_style zero 2.0\npair_coeff * *", forces), ranks=ranks)
-    begin, end = frames(lmp.folder / "all.dump").values()
+    lmp_tree.succeed(deck.replace("pair_style zero 2.0\npair_coeff * *", forces), ranks=ranks)
+    begin, end = frames(lmp_tree.folder / "all.dump").values()
     assert (begin[3:] == end[3:]).all()
     assert (np.abs(begin - end)[:3, 1:] > 1e-3).any(axis=1).all()
 
@@ -87,7 +85,6 @@ def test_kinetic_energies(lmp_tree, data, fix):
     table = lmp_tree.succeed(deck, ranks=2).thermo[0]
     total = np.add(table["f_move[1]"], table["f_move[2]"])
     assert total == pytest.approx(table["KinEng"], rel=1e-12)
-    assert total != pytest.approx(np.multiply(1.01, table["KinEng"]), rel=1e-12)
     assert max(table["f_move[3]"]) == 0.0
 
 
@@ -159,7 +156,6 @@ def test_all_units(lmp_tree, units):
     start = np.loadtxt(data.read_text().partition("Velocities")[2].splitlines()[2:])[:, 1:]
     moved = np.abs(ours - start).max()  # forces have acted
     assert np.abs(ours - rigid).max() < 3e-4 * moved
-    assert np.abs(1.01 * ours - rigid).max() > 3e-4 * moved
     # and energy is conserved: the scalar and the kinetic energies are in the units of energy
     drift = energy["TotEng"][-1] - energy["TotEng"][0]
     assert abs(drift) < 0.2 * np.ptp(energy["KinEng"])

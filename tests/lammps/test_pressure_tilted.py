@@ -78,7 +78,6 @@ def test_virial_is_the_change_of_energy_with_the_box(lmp_wheel):
     found = -(energy @ np.array([1, -8, 8, -1])) / (12 * d)
     scale = np.abs(virial).max()
     assert np.abs(virial - found).max() < 1e-7 * scale and np.abs(virial[3:]).min() > 1e-4 * scale
-    assert (np.abs(1.01 * virial - found) > 1e-7 * scale).all()
 
 
 FLIPPED = "x 0.3 0.3 1.0 y 0.3 0.3 1.0 z 0.3 0.3 1.0 xy -2.0 -2.0 1.0 xz 0 0 1.0 yz 0 0 1.0 temp 0.7 0.7 0.8 flip {}"

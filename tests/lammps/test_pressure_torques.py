@@ -23,7 +23,6 @@ def test_virial_is_the_change_of_energy_with_the_box(lmp_tree):
     found = -(energy @ np.array([1, -8, 8, -1])) / (12 * d)
     scale = np.abs(virial).max()
     assert np.abs(virial - found).max() < 1e-8 * scale
-    assert (np.abs(1.01 * virial - found) > 1e-3 * scale).all()
     # without dipoles it differs
     assert np.abs(virial - diagonal(without)).max() > 0.03 * scale
 

@@ -10,7 +10,6 @@ from scenes import (
     flat_water_data,
     frames,
     last_frame,
-    one_after_the_other,
     water,
     water_data,
 )
@@ -25,12 +24,9 @@ def run(lmp, data, ranks=1, **settings):
 def test_1_2_and_4_ranks_over_500_steps(lmp_tree, data):
     settings = dict(steps=500, dt=0.2)
     one, table = run(lmp_tree, data, **settings)
+    assert table["Temp"][-1] > 2.0 * table["Temp"][0]  # bodies have collided and migrated
     for ranks in (2, 4):
         assert difference(one, run(lmp_tree, data, ranks, **settings)[0]) < 1e-12
-
-    # bodies have collided and migrated, and a difference of 1 % would have been detected
-    assert table["Temp"][-1] > 2.0 * table["Temp"][0]
-    assert difference(one, one * 1.01) > 5e-3
 
 
 @pytest.mark.parametrize(
@@ -58,7 +54,6 @@ def test_many_bodies_follow_the_order_of_their_atoms(lmp_tree, data, fix, ranks)
     sorted_run = "run 4\natom_modify sort 3 2.0\nrun 4"
     other, _ = run(lmp_tree, data, ranks, run=sorted_run, steps=8, **settings)
     assert difference(one, other) < 1e-12
-    assert difference(one, one * 1.01) > 5e-3
 
 
 @pytest.mark.parametrize("ranks", [1, 4])
@@ -128,11 +123,8 @@ def seen_from_the_stream(frame):
 def test_bodies_that_change_their_ranks_all_the_time(lmp_tree, scene, formulation):
     folder = lmp_tree.folder
     data = SCENES[scene](folder / "data.water")
-    alone = (("one", 0.1), ("longer", 0.1001))
-    decks = [streaming(scene, data, name, formulation, dt=dt) for name, dt in alone]
-    lmp_tree.succeed(one_after_the_other(decks))
-    one, longer = (seen_from_the_stream(last_frame(folder / f"{name}.dump")) for name, _ in alone)
-    assert difference(one, longer) > 1e-5  # forces act: a step 0.1 % longer is detected
+    lmp_tree.succeed(streaming(scene, data, "one", formulation))
+    one = seen_from_the_stream(last_frame(folder / "one.dump"))
     assert scene != "flat" or (one[:, [3, 6]] == 0).all()
 
     # over the scenes, each cut is combined with each access
@@ -141,7 +133,6 @@ def test_bodies_that_change_their_ranks_all_the_time(lmp_tree, scene, formulatio
         lmp_tree.succeed(streaming(scene, data, "many", formulation, cut, access), ranks=ranks)
         many = seen_from_the_stream(last_frame(folder / "many.dump"))
         assert difference(one, many) < 1e-10
-        assert difference(one, 1.01 * many) > 5e-3
         # bodies did change their ranks, and no rank was idle
         owners = np.array(list(frames(folder / "many.owners").values()))[:, :, 1]
         assert set(owners.flat) == set(range(ranks))

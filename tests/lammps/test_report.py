@@ -57,8 +57,8 @@ def counted(lines):
 
 
 # --- the keywords --------------------------------------------------------------------------------
-def test_once_and_short_by_default(lmp):
-    lines = report(lmp, two_molecules(after="run 2\nrun 2"))
+def test_once_and_short_by_default(lmp_tree):
+    lines = report(lmp_tree, two_molecules(after="run 2\nrun 2"))
     assert TITLE.match(lines[0]).groups() == ("move", "2", "3", "12")
     assert 5 <= len(effects(lines)) <= len(lines) - 1 <= 16
 
@@ -141,9 +141,9 @@ def test_degrees_of_freedom_of_a_shape(lmp_tree, shape):
     assert effects(lines)["torques of forces"].split()[0] == on
 
 
-def test_degrees_of_freedom_of_other_bodies(lmp):
+def test_degrees_of_freedom_of_other_bodies(lmp_tree):
     for deck, told in ((KINDS, ("3", "1 to 3", "14")), (FLAT, ("1", "3", "3"))):
-        assert TITLE.match(report(lmp, deck)[0]).groups() == ("move", *told)
+        assert TITLE.match(report(lmp_tree, deck)[0]).groups() == ("move", *told)
 
 
 # --- surroundings --------------------------------------------------------------------------------
@@ -203,12 +203,12 @@ def test_two_fixes_of_this_style(lmp_tree):
     assert proposals(lines) == "neigh_modify exclude molecule/intra left"
 
 
-def test_pairs_beyond_the_list_are_not_counted(lmp):
+def test_pairs_beyond_the_list_are_not_counted(lmp_tree):
     deck = bodies("points", "points", "points")
     deck = deck.replace("fix move all", "group few id 1\nfix move few")
-    assert counted(report(lmp, deck)) == {}  # two fixed atoms, 5 apart
+    assert counted(report(lmp_tree, deck)) == {}  # two fixed atoms, 5 apart
     near = deck.replace("single 10 0 0", "single 6 0 0")
-    assert counted(report(lmp, near))["among"] == (1, 1)
+    assert counted(report(lmp_tree, near))["among"] == (1, 1)
 
 
 # --- omitted operations change nothing ------------------------------------------------------------

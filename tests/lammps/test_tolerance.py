@@ -57,8 +57,8 @@ def test_the_energy_error_follows_eps(lmp_tree):
     assert off(tables(lmp_tree.succeed(deck))[0]) > 100 * errors[-1]
 
 
-def test_outputs_are_those_of_the_steps(lmp):
-    (whole,) = tables(lmp.succeed(case1(steps=300)))
+def test_outputs_are_those_of_the_steps(lmp_tree):
+    (whole,) = tables(lmp_tree.succeed(case1(steps=300)))
     steps = np.diff(whole["Time"])
     again = np.diff(whole[REPEATED])[1:] > 0
     assert steps[1:][~again] == pytest.approx(whole[NEXT][1:-1][~again], rel=1e-11)
@@ -70,7 +70,7 @@ def test_outputs_are_those_of_the_steps(lmp):
     assert steps.max() / steps.min() > 2
     assert 1.25 < (steps[20:] / steps[19:-1]).max() < 1.3 * (1 + 1e-9)
     # the same in two runs
-    first, second = tables(lmp.succeed(case1(run="run 200\nrun 100")))
+    first, second = tables(lmp_tree.succeed(case1(run="run 200\nrun 100")))
     halves = [*first["v_total"], *second["v_total"][1:]]
     assert halves == whole["v_total"].tolist()
 

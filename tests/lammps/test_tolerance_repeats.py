@@ -47,9 +47,9 @@ def scene(tolerance, after="", until=8.0, pair=SMOOTH, columns="", **settings):
     )
 
 
-def test_energies_virials_and_random_numbers_are_those_of_the_step(lmp):
+def test_energies_virials_and_random_numbers_are_those_of_the_step(lmp_tree):
     columns = "press c_sums[1] v_virial v_draw"
-    (run,) = tables(lmp.succeed(scene("1e-10 energy", SUMS, columns=columns)))
+    (run,) = tables(lmp_tree.succeed(scene("1e-10 energy", SUMS, columns=columns)))
     again = np.flatnonzero(np.diff(run[REPEATED])) + 1
     assert len(again) > 10 and run[LARGEST][-1] <= 1
     # the failed try was at another position, with another energy: F v h, 1e6 times the difference here
@@ -57,10 +57,10 @@ def test_energies_virials_and_random_numbers_are_those_of_the_step(lmp):
     pairs = run["c_sums[1]"] - run["PotEng"]  # energy yes moves the total to the corrected pose
     assert np.abs(pairs).max() < 1e-7
     assert run["v_virial"] == pytest.approx(run["Press"], rel=1e-9, abs=1e-12)
-    mean = np.loadtxt(lmp.folder / "mean")[:, 1]
+    mean = np.loadtxt(lmp_tree.folder / "mean")[:, 1]
     assert mean == pytest.approx(run["Press"][-len(mean) :], rel=1e-5)
     # random numbers: as many as steps, though some steps were repeated
-    (plain,) = tables(lmp.succeed(scene("1e-3", SUMS, columns="v_draw", until=1.0)))
+    (plain,) = tables(lmp_tree.succeed(scene("1e-3", SUMS, columns="v_draw", until=1.0)))
     n = min(len(plain["v_draw"]), len(run["v_draw"]))
     assert plain["v_draw"][:n].tolist() == run["v_draw"][:n].tolist()
 
@@ -120,7 +120,7 @@ def test_steps_end_at_times_of_a_dump(lmp_tree):
 
 
 @pytest.mark.parametrize("interval", [7.3, 0.1])
-def test_steps_end_at_multiples_of_a_time(lmp, interval):
+def test_steps_end_at_multiples_of_a_time(lmp_tree, interval):
     """With thermo 0 there is output only at these times; fix halt, first or last, ends the run there."""
     words = f"every/time {interval}"
     often = scene("1e-9", until=7.3, words=words)
@@ -130,7 +130,7 @@ def test_steps_end_at_multiples_of_a_time(lmp, interval):
     assert len({often, rare, first}) == 3
     plain = scene("1e-9", until=7.3)
     all_steps, at_times, halted_first, free = tables(
-        lmp.succeed(one_after_the_other([often, rare, first, plain]))
+        lmp_tree.succeed(one_after_the_other([often, rare, first, plain]))
     )
     count = round(7.3 / interval)
     expected = np.arange(count + 1) * interval

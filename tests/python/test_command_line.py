@@ -15,7 +15,7 @@ from dumps import Motion, write
 from pages import paste, unpack
 from running import ROOT
 
-COMMANDS = ("", "cost", "analyze", "scatter")
+COMMANDS = ("cost", "analyze", "scatter")
 
 
 def examples_of(command):
@@ -28,9 +28,14 @@ def examples_of(command):
 @pytest.mark.parametrize("command", COMMANDS)
 def test_examples_of_the_help_can_be_pasted(command, tmp_path):
     done = paste(examples_of(command), unpack(tmp_path))
-    assert list(tmp_path.rglob(f"gearquat-{command or 'cost'}/*.png"))
+    assert list(tmp_path.rglob(f"gearquat-{command}/*.png"))
     # and no progress bar if the output is not a terminal
     assert "%|" not in done.stderr
+
+
+def test_first_examples_are_those_of_commands():
+    every = "".join(map(examples_of, COMMANDS))
+    assert all(line in every for line in examples_of("").splitlines())
 
 
 def test_version():

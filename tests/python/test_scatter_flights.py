@@ -144,16 +144,11 @@ def test_collision_integrals_of_argon(tmp_path):
     assert found["flights"]["unparted"] == found["flights"]["lost"] == 0
 
 
-def test_detailed_balance(tmp_path):
-    """At equal temperatures rotation gains no energy; cold rotation gains energy."""
+def test_detailed_balance(tmp_path, few_pilots):
+    """Cold rotation gains energy; for equal temperatures see test_several_temperatures_of_molecules."""
     deck = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5, **COARSE)
-    gains = []
-    for rotation in ("1", "0.2"):
-        out = tmp_path / rotation
-        run(deck, out, *WHOLE, "--rotation", rotation, "--count", "512")
-        gains.append(json.loads((out / "results.json").read_text())["quantities"]["gain"])
-    equal, cold = gains
-    assert abs(equal["value"]) < 3.0 * equal["error"]
+    run(deck, tmp_path / "out", *WHOLE, "--rotation", "0.2", "--count", "384")
+    cold = json.loads((tmp_path / "out" / "results.json").read_text())["quantities"]["gain"]
     assert cold["value"] > 3.0 * cold["error"]
 
 
@@ -161,29 +156,29 @@ def test_any_number_of_processes_and_parts(tmp_path, few_pilots):
     """The files are the same on two processes, continued after an interruption at any point, and merged from three
     parts."""
     deck = colliding.write(tmp_path)
-    run(deck, tmp_path / "whole", *WHOLE, "--count", "120")
+    run(deck, tmp_path / "whole", *WHOLE, "--count", "60")
     expected = contents(tmp_path / "whole")
-    run(deck, tmp_path / "two", *WHOLE, "--count", "120", "--processes", "2")
+    run(deck, tmp_path / "two", *WHOLE, "--count", "60", "--processes", "2")
     assert contents(tmp_path / "two") == expected
 
     cut = tmp_path / "two" / "flights.csv"
-    cut.write_bytes(expected["flights.csv"][:5003])
+    cut.write_bytes(expected["flights.csv"][:2503])
     (tmp_path / "two" / "results.json").unlink()
-    run(deck, tmp_path / "two", *WHOLE, "--count", "120")
+    run(deck, tmp_path / "two", *WHOLE, "--count", "60")
     assert contents(tmp_path / "two") == expected
 
     parts = []
-    for first in (80, 40, 0):
+    for first in (40, 20, 0):
         out = tmp_path / f"part{first}"
-        run(deck, out, *WHOLE, "--first", str(first), "--count", "40")
+        run(deck, out, *WHOLE, "--first", str(first), "--count", "20")
         parts += ["--merge", str(out)]
     result = CliRunner().invoke(main, ["scatter", *parts, "--out", str(tmp_path / "merged")])
     assert result.exit_code == 0, result.output
     assert contents(tmp_path / "merged") == expected
 
     # and a gap that is filled later
-    run(deck, out, *WHOLE, "--first", "60", "--count", "60")
-    run(deck, out, *WHOLE, "--count", "120")
+    run(deck, out, *WHOLE, "--first", "30", "--count", "30")
+    run(deck, out, *WHOLE, "--count", "60")
     assert contents(out) == expected
 
 
@@ -202,7 +197,7 @@ def test_what_is_known_of_flights_is_said(tmp_path, few_pilots):
 
 def test_killed_and_continued(tmp_path, few_pilots):
     deck, out = colliding.write(tmp_path), tmp_path / "out"
-    options = [*WHOLE, "--count", "400", "--processes", "1", "--out", str(out)]
+    options = [*WHOLE, "--count", "150", "--processes", "1", "--out", str(out)]
     process = subprocess.Popen(
         [sys.executable, "-c", FEW_PILOTS, "scatter", str(deck), *options], start_new_session=True
     )
@@ -213,9 +208,9 @@ def test_killed_and_continued(tmp_path, few_pilots):
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     flown = len(table.read_bytes().splitlines())
-    assert flown < 401
+    assert flown < 151
     run(deck, out, *options)
-    run(deck, tmp_path / "whole", *WHOLE, "--count", "400")
+    run(deck, tmp_path / "whole", *WHOLE, "--count", "150")
     assert contents(out) == contents(tmp_path / "whole")
 
 
@@ -282,7 +277,7 @@ def reduced(tmp_path_factory):
     return json.loads((folder / "out" / "results.json").read_text())
 
 
-@pytest.mark.parametrize("style", ["real", "si", "cgs", "electron", "micro"])
+@pytest.mark.parametrize("style", ["real", "si", "electron"])
 def test_all_styles_of_units(tmp_path, style, reduced):
     """The same collisions in other units: the same plan, the same integrals relative to spheres."""
     sigma = colliding.SIGMA / (UNITS[style].angstrom * 1e-10)
@@ -310,19 +305,19 @@ def test_all_styles_of_units(tmp_path, style, reduced):
 def test_several_temperatures_of_molecules(tmp_path):
     """Averages agree with flights at each temperature alone, and rotation gains nothing."""
     deck = colliding.write(tmp_path, colliding.DUMBBELLS, cutoff=4.0, inner=2.5, **COARSE)
-    options = ("--temperature", "2", "--temperature", "1", "--largest", "3", "--count", "768")
+    options = ("--temperature", "2", "--temperature", "1", "--largest", "3", "--count", "384")
     output = run(deck, tmp_path / "both", *options)
-    assert "temperatures 1, 2: 768 flights" in output and "temperature 1:" in output
+    assert "temperatures 1, 2: 384 flights" in output and "temperature 1:" in output
     both = json.loads((tmp_path / "both" / "results.json").read_text())["temperatures"]
     assert [answer["temperature"] for answer in both] == [1.0, 2.0]
     for answer in both:
         out = tmp_path / f"alone{answer['temperature']:g}"
-        run(deck, out, "--temperature", f"{answer['temperature']:g}", "--largest", "3", "--count", "768", "--seed", "2")
+        run(deck, out, "--temperature", f"{answer['temperature']:g}", "--largest", "3", "--count", "384", "--seed", "2")
         alone = json.loads((out / "results.json").read_text())["quantities"]
         for name in ("Omega(1,1)", "Omega(2,2)", "transfer"):
             one, two = answer["quantities"][name], alone[name]
             error = np.hypot(one["error"], two["error"])
-            assert abs(one["value"] - two["value"]) < 3.5 * error < 0.6 * two["value"], name
+            assert abs(one["value"] - two["value"]) < 3.5 * error < 0.85 * two["value"], name
         gain = answer["quantities"]["gain"]
         assert abs(gain["value"]) < 3.5 * gain["error"]
 
