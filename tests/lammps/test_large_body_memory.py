@@ -54,7 +54,7 @@ def peak(lmp_tree):
     command = f"{sys.executable} {wrapper} {peaks} {lmp_tree.executable}"
     measured.write_text(f'#!/bin/sh\nexec {command} "$@"\n')
     measured.chmod(0o755)
-    lmp = replace(lmp_tree, executable=measured)
+    lmp = replace(lmp_tree, executable=measured, library=None)
 
     def measure(style, cells, ranks=1, run=RUN):
         lmp.succeed(WALL.format(style=style, cells=cells, run=run), ranks=ranks)
