@@ -226,10 +226,12 @@ BodyState Collocation::state_at(int node, const Workspace &w, double spacing) co
     state.center[i] = value[i];
     state.velocity[i] = rate[i] / spacing;
   }
-  Turn::Momentum momentum;
-  const int terms = momentum_of(w, w.pairs, node, momentum);
   std::copy_n(w.q, 4, state.q);
-  Turn(terms).advance(w.body, momentum, state.q);
+  if (w.body.rotational_freedoms() > 0) {
+    Turn::Momentum momentum;
+    const int terms = momentum_of(w, w.pairs, node, momentum);
+    Turn(terms).advance(w.body, momentum, state.q);
+  }
   rotation_matrix(state.q, 1.0, axes);
   to_body(axes, rate + 3, state.omega_body);
   for (int i = 0; i < 3; ++i)
@@ -263,12 +265,14 @@ void Collocation::settle(int pair, Nodes &w) const
 TaylorSeries Collocation::series(const Workspace &w, int pairs) const
 {
   TaylorSeries series;
-  double c[TaylorSeries::MAX_TERMS][6], q[Turn::MOST + 1][4];
+  double c[TaylorSeries::MAX_TERMS][6], q[Turn::MOST + 1][4] = {};
   series.terms = terms_of(pairs);
   static_assert(MAX_NODES + 2 <= TaylorSeries::MAX_TERMS, "series too short for the nodes");
   expand(w, pairs, c[0]);
   const int terms = momentum_of(w, pairs, 1, series.momentum);
-  Turn::coefficients(w.body, series.momentum, terms, w.q, q);
+  std::copy_n(w.q, 4, q[0]);
+  if (w.body.rotational_freedoms() > 0)
+    Turn::coefficients(w.body, series.momentum, terms, w.q, q);
   for (int j = 0; j < TaylorSeries::MAX_TERMS; ++j) {
     for (int i = 0; i < 3; ++i) series.c[j][i] = j < series.terms ? c[j][i] : 0.0;
     std::copy_n(q[j], 4, series.c[j] + 3);

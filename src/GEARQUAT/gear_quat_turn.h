@@ -42,7 +42,7 @@ class Turn {
   /// `least`, and large enough for a relative error below `accuracy` of a free rotation.
   Turn(int terms, int least, double accuracy);
   /// As accurate as a series can be.
-  explicit Turn(int terms) : Turn(terms, MOST, 1.0) {}
+  explicit Turn(int terms) : orders{terms, MOST, {}} {}
 
   /// The changes of the quaternions of 1 to LANES bodies in the step.  A result does not depend on
   /// the others, and has no rounding error of q.  rows: of each body, `stride` numbers apart; first
