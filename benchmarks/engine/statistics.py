@@ -28,7 +28,7 @@ def mean_of_blocks(blocks):
     n = len(blocks)
     if n < 3:
         raise ValueError(f"{n} blocks are too few for a standard error")
-    return Mean(blocks.mean(axis=0), blocks.std(axis=0, ddof=1) / math.sqrt(n), n - 1)
+    return Mean(blocks.mean(axis=0), stats.sem(blocks), n - 1)
 
 
 def blocks_of(values, count):
@@ -45,12 +45,6 @@ def blocks_of(values, count):
 def mean_of_series(series, count):
     """Mean of several series (n,) without their first samples; its standard error is from ``count`` blocks of each."""
     return mean_of_blocks(np.concatenate([blocks_of(one, count) for one in series]))
-
-
-def with_error(value, error, sign=""):
-    """Value ± error with two digits of the error; ``sign``: "+" shows a positive sign."""
-    digits = min(max(0, 1 - math.floor(math.log10(error))), 4) if error > 0 else 4
-    return f"{value:{sign}.{digits}f} ± {error:.{digits}f}"
 
 
 def allowed(count, freedoms):

@@ -17,7 +17,6 @@ from scipy.optimize import brentq
 
 from lammps_gearquat.cli import main
 from lammps_gearquat.scatter import Plan, flights, open_pair, store
-from lammps_gearquat.scatter.progress import Progress
 from lammps_gearquat.scatter.sampling import rotational, starts_of
 from gearquat_analysis import Poses, open_dump
 from gearquat_analysis.units import UNITS
@@ -368,19 +367,6 @@ def test_flights_that_cannot_be_replayed(tmp_path, few_pilots):
 
 
 # --- what is told ---------------------------------------------------------------------------------
-def test_lines_in_the_log_of_a_batch_job(capsys):
-    """There is one line a minute, and lines for other messages."""
-    now = [0.0]
-    with Progress(lambda: now[0]) as progress:
-        progress.begin("flights", 900, 100)
-        for _ in range(10):
-            now[0] += 20.0
-            progress.advance(90)
-        progress.tell("done")
-    lines = capsys.readouterr().err.splitlines()
-    assert lines == ["flights: 370 of 1000", "flights: 640 of 1000", "flights: 910 of 1000", "done"]
-
-
 def heeds_interrupts():
     """A shell ignores interrupts in background processes."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -49,7 +49,7 @@ def test_number_and_error_end_at_the_same_digit(seed):
 )
 def test_with_error(value, error, text):
     assert with_error(value, error) == text
-    assert with_error(value, error, "Å") == f"{text} Å"
+    assert with_error(value, error, "Å", "+") == "+" * (value >= 0) + f"{text} Å"
 
 
 def test_cells():

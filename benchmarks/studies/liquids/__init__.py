@@ -10,10 +10,12 @@ from pathlib import Path
 
 import numpy as np
 from scipy.constants import Avogadro
+from scipy.stats import sem
 
 from benchmarks.engine import EXAMPLES, Finding, Job, Measurement, Study, Table
 from benchmarks.engine.methods import AUTOMATIC, rigid
-from benchmarks.engine.statistics import mean_of_series, slope, with_error
+from benchmarks.engine.statistics import mean_of_series, slope
+from gearquat_analysis.tables import with_error
 
 RIGID = rigid("rigid/nve/small", "rigid")
 NAMES = {AUTOMATIC: "`fix gear/quat`", RIGID: f"`{RIGID.label}`"}
@@ -207,7 +209,7 @@ def drift(runs, liquid):
     rates, errors = np.transpose([slope(run.time, run.total) for run in runs]) / unit
     if len(runs) == 1:
         return float(rates[0]), float(errors[0])
-    return float(rates.mean()), float(rates.std(ddof=1) / np.sqrt(len(rates)))
+    return float(rates.mean()), float(sem(rates))
 
 
 def warmer(runs, liquid):

@@ -5,14 +5,15 @@ dumbbells under a different pressure along each axis (``in.crystal``) shows whet
 """
 
 import itertools
-import math
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from scipy.stats import sem
 
 from benchmarks.engine import EXAMPLES, Finding, Measurement, Study, Table
-from benchmarks.engine.statistics import Mean, allowed, mean_of_series, slope, with_error
+from benchmarks.engine.statistics import Mean, allowed, mean_of_series, slope
+from gearquat_analysis.tables import with_error
 
 OURS, RIGID, SHAKE = "gear", "rigid", "shake"
 SHEARED = "sheared"
@@ -62,7 +63,7 @@ class Results:
         unit = 1e6 / (BOLTZMANN * TEMPERATURE * FREEDOMS)
         runs = [self.water[method, dt, seed] for seed in self.plan.seeds]
         rates = [unit * slope(run["Time"], run["v_conserved"])[0] for run in runs]
-        return float(np.mean(rates)), float(np.std(rates, ddof=1) / math.sqrt(len(rates)))
+        return float(np.mean(rates)), float(sem(rates))
 
     def sheared(self):
         """All six components of the molecular pressure in the crystal that shears."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.constants import Avogadro, calorie
 
-from benchmarks.engine.statistics import with_error
+from gearquat_analysis.tables import with_error
 from gearquat_analysis.units import UNITS
 
 from .frames import AXES
@@ -112,7 +112,7 @@ def cell(found, sign=""):
     value, error = found
     if math.isnan(value):
         return "–"
-    return with_error(value, error, sign) if error > 0 else f"{value:{sign}.4f}"
+    return with_error(value, error, sign=sign) if error > 0 else f"{value:{sign}.4f}"
 
 
 DENSITY = Quantity("density", "g/mL", mean_of("density"))

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from . import mapped
-from .blocks import Estimate, scatter, widening
+from .blocks import Estimate, scatter
 from .correlations import portions
 
 #: lags in units of the first lag of a range; the lags of the fit; the lag at which the exponent is taken

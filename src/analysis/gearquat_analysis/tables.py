@@ -48,15 +48,17 @@ def rounded(value, digits=3):
     return f"{float(f'{value:.{digits}g}'):g}"
 
 
-def with_error(value, error, unit=""):
+def with_error(value, error, unit="", sign=""):
     """Text of a number and its standard error: the error has two digits, and the number has the same decimals.
+
+    ``sign``: "+" in front of numbers that are not negative.
 
     >>> with_error(86.2, 10.3), with_error(0.3124, 0.0153, "Å"), with_error(2.744e-4, 1.9e-5)
     ('86 ± 10', '0.312 ± 0.015 Å', '(2.74 ± 0.19)e-4')
     """
     both, power = _decimals(value, error)
     joined = " ± ".join(both)
-    return (f"({joined})e{power}" if power else joined) + f" {unit}" * bool(unit)
+    return sign * bool(value >= 0) + (f"({joined})e{power}" if power else joined) + f" {unit}" * bool(unit)
 
 
 def error_cells(value, error):

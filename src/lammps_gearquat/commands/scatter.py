@@ -1,6 +1,7 @@
 """The command ``gearquat scatter``."""
 
 import os
+import sys
 from pathlib import Path
 
 import cloup
@@ -9,7 +10,7 @@ from gearquat_analysis.options import COUNT, FILE, POSITIVE, command, failing_cl
 
 from ..launch import LammpsError
 from ..trials.script import DeckError
-from .common import INTERRUPTED, reading_options
+from .common import INTERRUPTED, reading_options, shown_progress
 
 FROM_ZERO = cloup.IntRange(min=0)
 #: options for new flights; for merged parts they are already determined
@@ -133,20 +134,36 @@ def scatter(deck, variables, without, which, parts, out, **asked):
 
 def _flights(scene, asked, out, conduct):
     """Simulate flights of the ``scene``; results as text."""
-    from ..scatter.progress import Progress
     from ..scatter.store import read_lines
 
     count, first = asked["count"], asked["first"] or 0
     numbers = count and range(first, first + count)
     task = asked | {"most_steps": asked["steps"]}
     try:
-        with Progress() as progress:
-            return conduct.scatter(scene, task, numbers, asked["error"], asked["most"], out, progress)
+        with shown_progress(total=0, unit=" flights", desc="reading the deck") as bar:
+            return conduct.scatter(scene, task, numbers, asked["error"], asked["most"], out, _Progress(bar))
     except KeyboardInterrupt as interrupt:
         number = len(read_lines(out))
         kept = "no flight has ended" if not number else f"{number} flights are kept in {out.resolve()}"
         cloup.echo(f"\nInterrupted: {kept}; the same command continues after them", err=True)
         raise SystemExit(INTERRUPTED) from interrupt
+
+
+class _Progress:
+    """A progress ``bar`` over flights of several kinds."""
+
+    def __init__(self, bar):
+        self._bar, self.advance = bar, bar.update
+
+    def begin(self, what, count, done=0):
+        """Begin to simulate ``count`` of ``what``, flights of some kind; ``done`` of them are known."""
+        self._bar.set_description(what)
+        self._bar.reset(count + done)
+        self._bar.update(done)
+
+    def tell(self, text):
+        """Write a line above the bar."""
+        self._bar.write(text, file=sys.stderr)
 
 
 def _refuse(given, names, why):

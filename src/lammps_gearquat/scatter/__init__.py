@@ -10,7 +10,6 @@ pool       flights on several processes
 flights    one flight as a row of numbers
 store      the folder of results: settings, flights, and parts of it joined
 conduct    a run of the command
-progress   what a run prints while it lasts
 replay     one flight as a dump
 integrals  averages over flights with their errors: cross sections and collision integrals
 gas        transport coefficients of the dilute gas: viscosity, diffusion, relaxation of rotation

@@ -35,7 +35,7 @@ def simulate(pool, asked, numbers, error, most, out, progress):
     """Simulate flights in a Pool and keep them in the folder ``out``; (settings, rows of all flights there).
 
     ``asked``: seed, temperature (a rising tuple), energy, rotation and largest; ``numbers``, a range of flights, or None:
-    until all relative standard errors are at most ``error``, or ``most`` flights; ``progress``, a Progress.
+    until all relative standard errors are at most ``error``, or ``most`` flights; ``progress``: what has the methods begin, advance and tell of commands/scatter.py.
     """
     plan, farthest, wanted = _settle(pool, asked, error, out, progress)
     if not numbers:
