@@ -16,8 +16,10 @@ test_mixed_scenes test_bad_input test_ranks test_plugin test_fuzz test_accuracy_
 test_coming_and_going test_restart_matrix test_pressure_limits test_driven_box test_thermostat_far test_tolerance
 test_pressure test_hard_cases test_physics test_report test_pressure_runs test_example_logs
 
-test_studies test_scatter_flights test_howto test_command_line test_trials_decks test_scatter_bad_input
-test_trials_endings test_tutorial test_analysis_command test_trials_flow test_liquids
+test_scatter_flights test_howto test_command_line test_trials_decks test_scatter_bad_input
+test_trials_endings test_tutorial test_analysis_command test_trials_flow
+
+test_studies test_rivals test_liquids
 """.split()
 
 

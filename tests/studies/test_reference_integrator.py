@@ -1,11 +1,9 @@
-"""The extended-precision integrator: exactness, order, symmetry, the known trajectories, mpmath."""
+"""The extended-precision integrator: exactness, the known trajectories."""
 
 import functools
 
-import mpmath as mp
 import numpy as np
 import pytest
-from mp_scene import DIGITS, Scene
 
 from benchmarks.reference import integrators, paper_problem
 from benchmarks.reference.integrators import GraggBulirschStoer, NotReached, integrate
@@ -87,12 +85,3 @@ def test_another_order_and_tolerance_agree(case, body):
         start, end = (sum(problem.energies(s)) for s in (problem.start, state))
         assert abs(end - start) < 2e-15
         assert abs((state.q**2).sum() - 1) < 1e-16
-
-
-def test_short_piece_agrees_with_mpmath():
-    """Compared with mpmath's Taylor integrator at 30 digits, with an independent body, cage and equations."""
-    with mp.workdps(DIGITS):
-        expected = [LONG(mp.nstr(v, 25)) for v in Scene().at(mp.mpf(1))]
-    for wrong in (1, 1.01):
-        found = integrate(paper_problem(1), (LONG(wrong),))[0].packed()[0]
-        assert (np.abs(found - expected).max() < 4e-17) == (wrong == 1)
