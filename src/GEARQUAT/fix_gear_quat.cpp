@@ -176,7 +176,6 @@ void FixGearQuat::setup_pre_neighbor()
   if (!defined && !is_minimized()) step.take_velocities(update->ntimestep, false);
   const bool takes_over = args.infile.empty() && stated.empty() && (args.reinit || defined);
   if (takes_over && sites.any_changes()) {
-    sites.refuse_tears();
     sites.take_out_flow();
     ownership.recreate();
     driven_box.note_images();

@@ -144,10 +144,6 @@ void Box::flip()
    periodic images
 ------------------------------------------------------------------------- */
 
-// a displacement that has grown by less than this part of a period has not changed by a period
-
-static constexpr double PART = 0.25;
-
 void GearQuat::to_periods(const Domain *domain, const double *way, double *periods)
 {
   const double *to_box = domain->h_inv;
@@ -196,16 +192,6 @@ void GearQuat::undo_image_flag_overflow(const Domain *domain, const double *expe
   if (!image_flag_overflow(domain, expected, unwrapped, turns)) return;
   through(domain->h, turns, way);
   for (int k = 0; k < 3; ++k) unwrapped[k] += way[k];
-}
-
-bool GearQuat::whole_periods_away(const Domain *domain, const double *change, double further)
-{
-  double periods[3];
-  to_periods(domain, change, periods);
-  for (int k = 0; k < 3; ++k)
-    if (is_periodic(domain, k) && std::round(periods[k]) != 0.0 && further > PART * domain->h[k])
-      return true;
-  return false;
 }
 
 void GearQuat::follow_box(const Domain *domain, const double *box_before, const double *position,

@@ -111,10 +111,6 @@ bool image_flag_overflow(const Domain *domain, const double *expected, const dou
 /// (3).  Without an overflow `unwrapped` does not change.
 void undo_image_flag_overflow(const Domain *domain, const double *expected, double *unwrapped);
 
-/// True if the position of an atom relative to another atom has changed by whole periods and has
-/// become longer by `further`.
-bool whole_periods_away(const Domain *domain, const double *change, double further);
-
 /// The image of an unwrapped position in another box: its coordinates in units of the periods stay.
 /// box_before: as Domain::h, followed by the corner of the box.
 void follow_box(const Domain *domain, const double *box_before, const double *position,

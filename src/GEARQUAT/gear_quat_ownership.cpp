@@ -19,6 +19,7 @@
 #include "error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 #include <unordered_map>
@@ -119,9 +120,44 @@ bool Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
 
 void Ownership::recreate()
 {
+  constexpr double PART = 0.25;             // of a period, by which an arm grows if flags are wrong
+  constexpr double SAME_SHAPE = 1.0e-3;     // of distances; files may have few digits
+  constexpr double SAME_LENGTH = 1.0e-9;    // of the box
   std::vector<tagint> ids(atom->nlocal);
-  for (int i = 0; i < atom->nlocal; ++i) ids[i] = assigned[i].id;
+  std::vector<double> before(atom->nlocal);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    ids[i] = assigned[i].id;
+    before[i] = length(assigned[i].arm);
+  }
+  const bool same_box = std::equal(domain->h, domain->h + 6, last_box.begin());
   create(ids, GivenBodies());
+
+  const double few = SAME_LENGTH * (domain->xprd + domain->yprd + domain->zprd);
+  double far = HUGE_VAL;
+  for (int k = 0; k < domain->dimension; ++k)
+    if (domain->periodicity[k]) far = std::min(far, PART * domain->prd[k]);
+  tagint here[2] = {0, 0};    // bodies that are torn, or changed with the box
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const double further = length(assigned[i].arm) - before[i];
+    if (further > far) here[0] = ids[i];
+    if (!same_box && std::fabs(further) > SAME_SHAPE * before[i] + few) here[1] = ids[i];
+  }
+  const auto all = over_ranks(MPI_MAX, here, world);
+  if (all[0])
+    error->all(
+        FLERR,
+        "Fix gear/quat: some atoms of body {} are displaced from the others by whole periods of "
+        "the box; image flags of a body's atoms have to change together (set image, read_dump or "
+        "rerun with ix iy iz), or define the fix after they have changed",
+        all[0]);
+  if (all[1])
+    error->all(
+        FLERR,
+        "Fix gear/quat: the box has changed, and body {} has another shape than before: change_box "
+        "with remap moves each atom by itself, and without remap it tears a body that lies across "
+        "faces; change the box with fix deform, which moves bodies as a whole, move the body "
+        "inside before, or, to keep this shape, define the fix after the change",
+        all[1]);
 }
 
 bool Ownership::resume(const std::vector<const double *> &packed, bool with_extended, int group)

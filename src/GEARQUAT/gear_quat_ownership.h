@@ -80,7 +80,8 @@ class Ownership : protected Pointers {
   bool create(const std::vector<tagint> &ids, const GivenBodies &given);
   /// Builds more bodies, from atoms that are in none.  fresh: in a step, without histories.
   bool add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh);
-  /// Rebuilds the same bodies from the atoms' present masses, positions and velocities.
+  /// Rebuilds the same bodies from the atoms' present masses, positions and velocities.  Ends the run
+  /// if image flags or another box than the last one have torn or changed a body.
   void recreate();
   /// Replaces the bodies that the command has just made by the bodies of a restart file, made of
   /// the same atoms; the command numbers them.  Returns false, and removes all bodies, if they

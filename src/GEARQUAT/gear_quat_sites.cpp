@@ -20,9 +20,7 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-static constexpr double SAME_LENGTH = 1.0e-9;    // of the box, of lengths
-static constexpr double SAME_SHAPE = 1.0e-3;     // of distances; files may have few digits
-static constexpr double SAME = 1.0e-11;          // rounding of coordinates and velocities
+static constexpr double SAME = 1.0e-11;    // rounding of coordinates and velocities
 
 /// LAMMPS' arrays of vectors are one block of memory.
 static double *first_of(double **vectors)
@@ -303,57 +301,6 @@ bool Sites::any_changes() const
       here = 1;
   }
   return over_ranks(MPI_MAX, here, world) != 0;
-}
-
-/// The user may have moved, rotated or deformed a body between two runs.  It is torn if its atoms
-/// are whole periods further apart than before, or if parts of it have moved with the faces of the
-/// box.
-void Sites::refuse_tears() const
-{
-  struct Owner {    // its unwrapped position, actual and according to the body
-    double found[3], expected[3];
-  };
-  std::vector<Owner> owners(bodies.nhere());
-  for (const Site &site : sites)
-    if (ownership.owned_by(site.atom) >= 0)
-      unwrapped(site, owners[site.body].found, owners[site.body].expected);
-  ownership.sum(owners);
-  ownership.spread(owners);
-
-  const bool same_box = std::equal(domain->h, domain->h + 6, ownership.box().begin());
-  tagint here[2] = {0, 0};    // bodies that are torn, or changed with the box
-  for (const Site &site : sites) {
-    const Owner &owner = owners[site.body];
-    double found[3], expected[3], before[3], now[3], change[3];
-    unwrapped(site, found, expected);
-    for (int k = 0; k < 3; ++k) {
-      before[k] = expected[k] - owner.expected[k];
-      now[k] = found[k] - owner.found[k];
-      change[k] = now[k] - before[k];
-    }
-    const double further = length(now) - length(before);
-    const double few = SAME_LENGTH * (domain->xprd + domain->yprd + domain->zprd);
-    const tagint id = bodies.body_at(site.body).id;
-    if (whole_periods_away(domain, change, further)) here[0] = id;
-    if (!same_box && std::fabs(further) > SAME_SHAPE * length(before) + few) here[1] = id;
-  }
-  const auto all = over_ranks(MPI_MAX, here, world);
-  if (all[0])
-    error->all(
-        FLERR,
-        "Fix gear/quat: some atoms of body {} are displaced from the others by whole periods of "
-        "the box; image flags of a body's atoms have to change together (set image, read_dump or "
-        "rerun with ix iy iz), or define the fix after they have changed",
-        all[0]);
-  if (all[1])
-    error->all(
-        FLERR,
-        "Fix gear/quat: the box has changed, and body {} has another shape than before: change_box "
-        "with remap moves each atom by itself, and without remap it tears a body that lies across "
-        "faces; change the box with fix deform, which moves bodies as a whole, move the body "
-        "inside "
-        "before, or, to keep this shape, define the fix after the change",
-        all[1]);
 }
 
 /* ----------------------------------------------------------------------

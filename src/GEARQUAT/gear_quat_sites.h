@@ -60,9 +60,6 @@ class Sites : protected Pointers {
   /// True if masses, positions, velocities or orientations of atoms differ from their bodies.
   /// Collective.
   bool any_changes() const;
-  /// Ends the run if image flags or another box have torn or changed a body.  Ownership::box() is
-  /// the previous box.  Collective.
-  void refuse_tears() const;
   /// The number of times that sites were listed or placed, the same on all ranks: results computed
   /// from positions or loads at another number are out of date.
   int placements() const { return nplacements; }
