@@ -93,27 +93,17 @@ void Forces::look_at_time()
   save();
   for (const bool of_fixes : {false, true}) {
     if (!why.empty() || (of_fixes && post_force.empty())) continue;
-    const auto for_numbers = [this](auto act) {
-      for (double **rows : {atom->f, atom->torque})
-        for (int k = 0; rows && k < 3 * atom->nlocal; ++k) act(rows[0][k]);
-    };
-    evaluate_at(update->ntimestep, of_fixes);
-    std::vector<double> now;
-    now.reserve(6 * (size_t) atom->nlocal);
+    const std::vector<double> now = forces_at(update->ntimestep, of_fixes);
     double largest = 0.0;
-    for_numbers([&](double one) {
-      now.push_back(one);
-      largest = std::max(largest, std::fabs(one));
-    });
+    for (const double one : now) largest = std::max(largest, std::fabs(one));
     const double same = SAME * over_ranks(MPI_MAX, largest, world);
     for (const bigint step : {EVERY_TIMES, AT_NO_TIMES}) {
       if (!why.empty()) break;
-      evaluate_at(step, of_fixes);
-      int differs = 0;
-      auto then = now.begin();
-      for_numbers([&](double one) {
-        if (std::fabs(one - *then++) > same) differs = 1;
-      });
+      const std::vector<double> then = forces_at(step, of_fixes);
+      const int differs =
+          !std::equal(now.begin(), now.end(), then.begin(), [same](double a, double b) {
+            return !(std::fabs(a - b) > same);
+          });
       if (over_ranks(MPI_MAX, differs, world) && why.empty())
         why = of_fixes ? "an external force depends on time"
                        : fmt::format("forces depend on time (pair style {})", force->pair_style);
@@ -124,15 +114,15 @@ void Forces::look_at_time()
 
 /// Forces and torques of the styles, or of the fixes, at another step, with energies and virials of
 /// the last step as if they were current; reason() reports if one of them reads these.
-void Forces::evaluate_at(bigint step, bool of_fixes)
+std::vector<double> Forces::forces_at(bigint step, bool of_fixes)
 {
   const bigint present = update->ntimestep;
+  const size_t n = 3 * (size_t) atom->nlocal;
   update->ntimestep = step;
   for (auto *tally : steps_of_tallies()) *tally = step;
   if (of_fixes) {
-    const size_t n = 3 * (size_t) atom->nlocal;
-    if (n) std::fill_n(atom->f[0], n, 0.0);
-    if (n && atom->torque_flag) std::fill_n(atom->torque[0], n, 0.0);
+    for (double **rows : {atom->f, atom->torque})
+      if (n && rows) std::fill_n(rows[0], n, 0.0);
     for (auto *fix : post_force) {
       fix->post_force(0);
       note_reader(name_of(fix));
@@ -142,6 +132,10 @@ void Forces::evaluate_at(bigint step, bool of_fixes)
     note_reader(fmt::format("pair style {}", force->pair_style));
   }
   update->ntimestep = present;
+  std::vector<double> found;
+  for (double **rows : {atom->f, atom->torque})
+    if (n && rows) found.insert(found.end(), rows[0], rows[0] + n);
+  return found;
 }
 
 void Forces::note_reader(const std::string &reader)

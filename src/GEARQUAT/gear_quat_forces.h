@@ -64,7 +64,7 @@ class Forces : protected Pointers {
   void look_at_styles();
   void look_at_fixes(const std::vector<const Fix *> &owners);
   void look_at_time();
-  void evaluate_at(bigint step, bool of_fixes);
+  std::vector<double> forces_at(bigint step, bool of_fixes);
   void clear();
   void evaluate_styles(int eflag, int vflag);
   std::array<bigint *, 4> steps_of_tallies();
