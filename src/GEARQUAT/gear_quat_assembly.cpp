@@ -104,9 +104,7 @@ void Assembly::unwrapped(int part, int i, double *x) const
 {
   const double *first = sizes[part].first_x;
   domain->unmap(atom->x[i], atom->image[i], x);
-  const double way =
-      std::fabs(x[0] - first[0]) + std::fabs(x[1] - first[1]) + std::fabs(x[2] - first[2]);
-  if (!(way < certain)) undo_image_flag_overflow(domain, first, x);
+  undo_image_flag_overflow(domain, first, x);
 }
 
 /// The vector from the center of mass to a site; zero if the two coincide up to rounding.
@@ -159,9 +157,6 @@ Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extend
     given(given), extended(extended), parts(comm, world, ids.data(), (int) ids.size()),
     made(parts.number(), Made())
 {
-  double steepest = 0.0;
-  for (int k = 0; k < 6; ++k) steepest = std::max(steepest, std::fabs(domain->h_inv[k]));
-  certain = 0.25 * (double) IMGMASK / steepest;
   find_sizes();
   find_extremes();
   refuse_faults();

@@ -68,7 +68,6 @@ class Assembly : protected Pointers {
   const Extended *extended;
   Parts parts;
   std::vector<Made> made;
-  double certain;    ///< sites closer to each other than this have consistent image flags
 
   enum { MASSLESS, NOT_FINITE, NEGATIVE, UNBALANCED, APART, FAULTS, TORN = FAULTS, FINDINGS };
   tagint faulty[FINDINGS] = {};    ///< a body with each fault on this rank, 0 for none

@@ -158,13 +158,6 @@ std::array<int, 3> GearQuat::periods_of(imageint flags)
           (int) (flags >> IMG2BITS) - IMGMAX};
 }
 
-static bool is_periodic(const Domain *domain, int direction)
-{
-  return (direction == 0       ? domain->xperiodic
-              : direction == 1 ? domain->yperiodic
-                               : domain->zperiodic) != 0;
-}
-
 /* ---------------------------------------------------------------------- */
 
 bool GearQuat::image_flag_overflow(const Domain *domain, const double *expected,
@@ -178,7 +171,7 @@ bool GearQuat::image_flag_overflow(const Domain *domain, const double *expected,
   bool any = false;
   for (int k = 0; k < 3; ++k) {
     turns[k] = 0.0;
-    if (!(std::fabs(boxes[k]) > 0.5 * range) || !is_periodic(domain, k)) continue;
+    if (!(std::fabs(boxes[k]) > 0.5 * range) || !domain->periodicity[k]) continue;
     turns[k] = range * std::round(boxes[k] / range);
     any = true;
   }

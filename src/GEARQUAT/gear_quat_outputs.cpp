@@ -135,13 +135,12 @@ std::vector<GivenLine> Outputs::lines() const
 /// A center in the box and its image flags, also if they exceed the range of integers.
 void Outputs::wrap(const double *center, double *wrapped, double *image) const
 {
-  const int periodic[3] = {domain->xperiodic, domain->yperiodic, domain->zperiodic};
   const bool tilted = domain->triclinic;
   std::copy_n(center, 3, wrapped);
   if (tilted) domain->x2lamda(wrapped, wrapped);
   for (int k = 0; k < 3; ++k) {
     const double low = tilted ? 0.0 : domain->boxlo[k], period = tilted ? 1.0 : domain->prd[k];
-    image[k] = periodic[k] ? std::floor((wrapped[k] - low) / period) : 0.0;
+    image[k] = domain->periodicity[k] ? std::floor((wrapped[k] - low) / period) : 0.0;
     wrapped[k] -= image[k] * period;
   }
   if (tilted) domain->lamda2x(wrapped, wrapped);

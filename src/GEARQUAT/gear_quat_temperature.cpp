@@ -41,7 +41,7 @@ Temperature::Temperature(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
     Pointers(lmp),
     subtracted(words.subtracted), fix(fix), bodies(bodies), words(words),
     start(words.damp > 0.0 ? words.start : pressure.temperature),
-    stop(words.damp > 0.0 ? words.stop : pressure.temperature), of_bodies(start == 0.0),
+    stop(words.damp > 0.0 ? words.stop : pressure.temperature),
     components(pressure.any() ? Upper::SIZE : 0)
 {
 }
@@ -295,7 +295,7 @@ void Temperature::fields(Fields &v)
 {
   double found = start;
   v(found);
-  if (v.reads() && of_bodies) start = stop = found;
+  if (v.reads() && start == 0.0) start = stop = found;    // no keyword states one
 }
 
 /* ----------------------------------------------------------------------

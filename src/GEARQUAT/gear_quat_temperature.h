@@ -115,7 +115,6 @@ class Temperature : protected Pointers {
   const Bodies &bodies;
   const ThermostatWords &words;
   double start, stop;      ///< the target of a run
-  const bool of_bodies;    ///< no keyword states a temperature
   const int components;    ///< of the tensor: all with a pressure, otherwise none
 
   bool constant[3] = {}, stated = false;

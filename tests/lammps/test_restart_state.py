@@ -190,7 +190,7 @@ NOT_IN_A_FILE = {
         STEP: "predicted errors speed tries failed fresh",
     },
     "temperature Temperature": {
-        COMMAND: "subtracted stop of_bodies words components",
+        COMMAND: "subtracted stop words components",
         OTHERS: "fix bodies",
         DERIVED: "line freedoms",
         RUN: "constant stated outside of_total count_of mass changes natoms",
