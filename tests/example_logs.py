@@ -21,7 +21,7 @@ from running import EXAMPLES, ROOT, Lammps, make_lmp_wheel, tree_source, waiting
 CONFIGURATION = ROOT / "tests" / "lammps" / "run_tests.yaml"
 
 #: folders with decks; ``common`` is read by some of them
-FOLDERS = ("case1", "case2", "case3", "coated", "collisions", "fields", "isokinetic", "top", "water", "water_npt", "water_nvt")
+FOLDERS = ("case1", "case2", "case3", "coated", "collisions", "fields", "isokinetic", "top", "water", "water_npt")
 RANKS = (1, 4)
 #: decks that are not run on four ranks: runs of minutes on two cores, a pair of bodies, and motion in which rounding
 #: grows to 1e-5, or an atom crosses a cutoff in another step
