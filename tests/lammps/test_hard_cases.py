@@ -291,7 +291,7 @@ def test_the_trajectory_is_that_in_an_open_box(lmp_wheel, formulation, place):
 
 def test_water_with_a_plain_cutoff_is_not_lost(lmp_wheel):
     """At 2 fs, where energies jump by kcal/mol; with the same number of values, Gear's coefficients are unstable."""
-    data, pair = EXAMPLES / "isokinetic" / "data.water", (EXAMPLES / "water" / "forces.plain").read_text()
+    data, pair = EXAMPLES / "water" / "data.water", (EXAMPLES / "water" / "forces.plain").read_text()
 
     def deck(fix):
         return water(data, fix, dt=2.0, steps=200, thermo=10, pair=pair)
