@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "gear_quat_shapes.h"
 #include "follow.h"
+#include "gear_quat_shapes.h"
 #include "numbers.h"
 
 namespace Drive {

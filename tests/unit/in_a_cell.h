@@ -209,9 +209,8 @@ struct Host {
       for (size_t b = 0; b < work.size(); ++b)
         collocation.begin(our.bodies[b],
                           local_series(our.bodies[b], our.scaled[b], loads[b], our.h), work[b]);
-      collocation.begin(our.matrix.m.data(),
-                                     (our.rate * our.matrix).scaled(our.h).m.data(),
-                                     second.m.data(), cell);
+      collocation.begin(our.matrix.m.data(), (our.rate * our.matrix).scaled(our.h).m.data(),
+                        second.m.data(), cell);
       collocation.begin(0.0, our.twice_kinetic(), twice);
       collocation.begin(0.0, our.law.twice_box(0.0, our.rate), twice_box);
       collocation.begin(0.0, our.law.heat_rate(0.0, our.matrix, our.rate), heat);

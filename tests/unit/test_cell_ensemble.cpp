@@ -211,11 +211,6 @@ void expect(const Mean &found, double exact, double most)
   EXPECT_LT(std::fabs(found.value() - exact), 4.0 * found.error()) << found.value();
   EXPECT_LT(found.error(), most);
 }
-void refuse(const Mean &found, double exact)
-{
-  EXPECT_GT(std::fabs(found.value() - exact), 6.0 * found.error()) << found.value();
-}
-
 }    // namespace
 
 TEST(CellEnsemble, VolumeOfRotorsWithTheirMomentumConserved)
@@ -224,10 +219,6 @@ TEST(CellEnsemble, VolumeOfRotorsWithTheirMomentumConserved)
   expect(right.mean, 4.0, 0.02);
   expect(right.variance, 4.0, 0.15);
   expect(right.box, 1.0, 0.01);
-  // with all momenta counted
-  const Volumes wrong = volumes(3.0 * ROTORS, true, 4.0, 100);
-  refuse(wrong.mean, 4.0);
-  expect(wrong.mean, 3.75, 0.03);
 }
 
 TEST(CellEnsemble, VolumeOfRotorsInAField)
@@ -236,13 +227,6 @@ TEST(CellEnsemble, VolumeOfRotorsInAField)
   expect(right.mean, 5.0, 0.02);
   expect(right.variance, 5.0, 0.15);
   expect(right.box, 1.0, 0.01);
-  // with degrees of freedom of rotation counted, and without the term
-  const Volumes all = volumes(6.0 * ROTORS, false, 5.0, 100),
-                none = volumes(HUGE_VAL, false, 5.0, 100);
-  refuse(all.mean, 5.0);
-  expect(all.mean, 4.5, 0.03);
-  refuse(none.mean, 5.0);
-  expect(none.mean, 4.0, 0.03);
 }
 
 namespace {

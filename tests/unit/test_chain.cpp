@@ -90,10 +90,7 @@ TEST(Chain, WhatItTakesIsWhatItsFrictionDoes)
           const double twice_then = drive.c[0] + s * (drive.c[1] + s * drive.c[2]);
           work += 0.05 * WEIGHTS[k] * h * twice_then * chain.flow(at, drive, h, s).y[0];
         }
-      double taken = energy_after(1.0) - energy_after(0.0);
-      Check::holds_and_needs({&taken, &work}, [&] {
-        return std::fabs(taken - work) < 1.0e-12;
-      });
+      EXPECT_NEAR(energy_after(1.0) - energy_after(0.0), work, 1.0e-12);
     }
 }
 
@@ -117,7 +114,6 @@ TEST(Chain, FollowsAKineticEnergyAsAReferenceSolution)
     };
   };
   const auto exact = runge_kutta<4>(rates_ld(period), {}, until, 40000);
-  const auto other = runge_kutta<4>(rates_ld(1.01 * period), {}, until, 40000);
 
   for (int n = 4; n <= 12; ++n) {
     vector<double> errors;
@@ -142,8 +138,6 @@ TEST(Chain, FollowsAKineticEnergyAsAReferenceSolution)
     EXPECT_GT(slopes(steps, errors)[n < 8 ? 2 : 1], n - 0.4) << n;
     EXPECT_LT(errors[2], 2.0e-4) << n;
   }
-  // a damping time 1 % off would be detected
-  EXPECT_GT(std::fabs(double(exact[0] - other[0])), 2.0e-3);
 }
 
 TEST(Chain, ConservedQuantityToTheOrderOfTheMethod)
@@ -189,7 +183,7 @@ TEST(Chain, FreeBodiesReachATargetAsTheEquationsSay)
           },
           {}, until, 40000);
     };
-    const auto exact = reference(1.0), other = reference(1.01);
+    const auto exact = reference(1.0);
     for (const Formulation formulation : FORMULATIONS) {
       const Scheme scheme = with(formulation, 8);
       vector<double> errors;
@@ -211,7 +205,6 @@ TEST(Chain, FreeBodiesReachATargetAsTheEquationsSay)
       EXPECT_LT(errors[1], 1.0e-6);
       EXPECT_GT(std::log2(errors[0] / errors[1]) / 3.0, 6.5) << errors[0] << " " << errors[1];
     }
-    EXPECT_GT(std::fabs(double(exact[0] - other[0])), 1.0e-3);
   }
 }
 

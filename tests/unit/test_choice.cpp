@@ -62,7 +62,6 @@ TEST(FastEdge, IsTheFrequencyOfAVibrationAtAnyPhaseAndSpacing)
       for (const double h : {0.04, -0.1}) {
         const double z = sums_of_start(BALL, swinging(phase), springs, step).fast_edge(h);
         EXPECT_NEAR(z, std::fabs(h) * OMEGA, 0.002 * std::fabs(h) * OMEGA) << phase;
-        EXPECT_GT(std::fabs(z / (1.01 * std::fabs(h) * OMEGA) - 1.0), 0.005);
       }
 }
 

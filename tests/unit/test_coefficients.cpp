@@ -135,7 +135,8 @@ TEST(ErrorWeights, AreThoseOfTheDerivationAndDifferencesOfNeighboringC0)
   for (int n = FIRST_FEWEST; n <= FIRST_MOST; ++n)
     EXPECT_EQ(weight2(Formulation::FIRST, n), std::pow(first_order_error(n).value(), 2)) << n;
   for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n)
-    EXPECT_EQ(weight2(Formulation::SECOND, n), std::pow(second_order_local_error(n).value(), 2)) << n;
+    EXPECT_EQ(weight2(Formulation::SECOND, n), std::pow(second_order_local_error(n).value(), 2))
+        << n;
   for (int n = 3; n <= 12; ++n)
     EXPECT_EQ(first_order_error(n), first_order(n - 1)[0] - first_order(n)[0]) << n;
   EXPECT_EQ(first_order_error(4), R(5, 12) - R(3, 8));    // from the printed table

@@ -24,19 +24,6 @@ TEST(Integrator, FollowsTheReferencesInTheCage)
     }
 }
 
-TEST(Integrator, TheReferenceInTheCageRefusesOnePercent)
-{
-  CageScene scene(1, true);
-  RigidBody &body = scene.body;
-  Check::holds_and_needs({&body.mass, &body.inertia[0], &body.inertia[1], &body.inertia[2],
-                          &scene.site_charge[3], &scene.site_epsilon[3], &scene.site_sigma[3],
-                          &scene.site_body[3][2], &scene.start.velocity[0],
-                          &scene.start.omega_body[1], &scene.cage_charge[13]},
-                         [&] {
-                           return error(cage(scene), scheme_of(SECOND), 0.1, 0.05) <= 1e-3;
-                         });
-}
-
 TEST(Integrator, FreeAsymmetricTopFromThetaZeroInBothRegimes)
 {
   const long double moments[3] = {3.0L, 2.0L, 1.2L};
@@ -62,9 +49,6 @@ TEST(Integrator, FreeAsymmetricTopFromThetaZeroInBothRegimes)
       EXPECT_GT(Check::smallest(Check::slopes(first, e)), 4.7) << scheme;
       EXPECT_LT(Check::smallest(e), 1e-13);    // down to rounding
       EXPECT_LT(e.back(), 5e-13);              // with little growth afterwards
-
-      scene.body.inertia[1] *= 1.01;    // 1 % in a moment: the order is lost
-      EXPECT_LT(error_slopes(scene, scheme, first, 0.05).back(), 0.1);
     }
 }
 

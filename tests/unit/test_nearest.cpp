@@ -99,7 +99,7 @@ TEST(NearestTwist, OfARigidMotionIsThatMotion)
     return Check::largest_difference(x.data(), way.data(), 3) < 1e-13 &&
         Check::largest_difference(x.data() + 3, turn.data(), 3) < 1e-13;
   };
-  Check::holds_and_refuses_one_percent(
+  Check::holds(
       {found.way[0], found.way[1], found.way[2], found.turn[0], found.turn[1], found.turn[2]},
       is_given);
 }
@@ -119,7 +119,7 @@ TEST(NearestTwist, IsAnOrthogonalProjection)
   double square = 0.0;
   for (const auto &one : projected) square += dot3(one.data(), one.data());
   const double power = dot3(all.force, found.way) + dot3(all.torque_space, found.turn);
-  Check::holds_and_refuses_one_percent({square}, [&](const vector<double> &x) {
+  Check::holds({square}, [&](const vector<double> &x) {
     return std::fabs(x[0] - power) < 1e-13;
   });
 }

@@ -103,8 +103,6 @@ TEST(FreeTop, AgreesWithRungeKuttaInBothRegimesAndAnyOrderOfAxes)
       const Top end = runge_kutta(I, s, 7.3L, 8000);
       EXPECT_LT(distance(top, end, 7.3L), 2e-13L);
       EXPECT_LT(distance(top, runge_kutta(I, s, -7.3L, 8000), -7.3L), 2e-13L);
-      I[0] *= 1.01L;    // a moment 1 % off is another motion
-      EXPECT_GT(distance(FreeTop(I, s.w, start), end, 7.3L), 1e-4L);
     }
 }
 

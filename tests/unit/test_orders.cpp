@@ -76,14 +76,6 @@ TEST(Orders, PositionInTheCageWithTheVelocityC0)
   }
 }
 
-TEST(Orders, OnePercentInAChargeLeavesNoOrder)
-{
-  CageScene off(1, true);
-  off.site_charge[0] *= 1.01;
-  for (const Scheme &scheme : {compensated(FIRST, 8), compensated(SECOND, 10), scheme_of(SECOND)})
-    EXPECT_LT(slope(cage(off), scheme, 0.1, 0.05), 0.1) << scheme;
-}
-
 TEST(Orders, OfTheShorterStarts)
 {
   const Scene scene = cage(CageScene(1, true));
@@ -121,7 +113,6 @@ TEST(Orders, OscillatorWithThePapersValues)
     EXPECT_GT(smallest(error_slopes(oscillator(10.0), scheme, h, 0.05)), six ? 5.8 : 4.7);
     // the velocity row of the second formulation has an error of order 5 with either c_0
     EXPECT_GT(smallest(error_slopes(oscillator(10.0, 1.0, true), scheme, h, 0.05)), 4.7);
-    EXPECT_LT(smallest(error_slopes(oscillator(10.0, 1.01), scheme, h, 0.05)), 0.1);
   }
 }
 
@@ -145,14 +136,6 @@ TEST(Orders, OrientationOfTheFreeTop)
       EXPECT_GT(p, order - 0.5) << scheme;
       EXPECT_LT(p, order + (order % 2 ? 0.3 : 1.05)) << scheme;
     }
-}
-
-TEST(Orders, OnePercentInAMomentLeavesNoOrder)
-{
-  RigidBody off = TOP;
-  off.inertia[1] *= 1.01;
-  for (const Scheme &scheme : {compensated(FIRST, 8, 2), compensated(SECOND, 10, 2)})
-    EXPECT_LT(slope(free_top(off), scheme, 0.1, 0.05), 0.1) << scheme;
 }
 
 TEST(Orders, RodTurnsUniformlyAndUnderTorque)
@@ -179,7 +162,5 @@ TEST(Orders, RodTurnsUniformlyAndUnderTorque)
         // irregular here
         EXPECT_GT(Check::slopes({h[0], h[3]}, {e[0], e[3]})[0], 4.7) << scheme;
         EXPECT_LT(e.back(), 1e-11);
-        rod.start.omega_body[0] *= 1.01;    // 1 % in the angular velocity: the order is lost
-        EXPECT_LT(error_slopes(rod, scheme, h, 0.05).back(), 0.1);
       }
 }
