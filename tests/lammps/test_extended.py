@@ -172,7 +172,7 @@ def charges_or_dipole(charge, radius):
     return [bearer, Atom(RIGHT, 1.0, charge=charge), Atom(ABOVE, 1.0, charge=-charge)]
 
 
-@pytest.mark.parametrize("radius", [0.0, 0.5])
+@pytest.mark.parametrize("radius, formulation", [(0.0, "momentum"), (0.5, "second"), (0.5, "first")])
 def test_a_dipole_is_torqued_as_a_pair_of_charges(lmp_tree, radius, formulation):
     """A point dipole and a dipole in a sphere, in a uniform field."""
     def move(charge):

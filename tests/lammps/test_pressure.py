@@ -44,7 +44,6 @@ def test_orders_of_velocities_edges_and_energy(lmp_wheel, mode):
     time, steps = 0.4, (0.02, 0.01, 0.005)
     decks = [pressed(f"values 9 {MODES[mode]}", 0.0025, round(time / 0.0025))]
     decks += [pressed(f"{s} {MODES[mode]}", dt, round(time / dt)) for s in SCHEMES for dt in steps]
-    decks += [pressed(f"values 7 {MODES[mode]}".replace("0.3", "0.303"), 0.005, 80)]
     result, frames = ends(lmp_wheel, decks)
     tables = result.thermo
 
@@ -57,8 +56,6 @@ def test_orders_of_velocities_edges_and_energy(lmp_wheel, mode):
         slopes = np.log2(of[0] / of[-1]) / (len(steps) - 1)
         # forces depend on velocities: n - 1 the energy's error is a difference of two, whose signs differ at some steps
         assert (slopes > values - np.array([1.6, 1.6, 1.9])).all(), (values, slopes)
-    # with a pressure 1 % off the motion differs
-    assert errors(len(decks) - 1)[0] > 1e4 * found[5][0]
 
 
 def test_the_columns_belong_together(lmp_wheel):
@@ -217,7 +214,7 @@ def test_in_two_dimensions(lmp_wheel):
 # --- invariants ---------------------------------------------------------------------------------
 
 
-LENGTHS = {"iso": ("iso {} 1.0", 100000, 1e-13), "aniso": ("aniso {} 1.0", 6000, 1e-12), "slow": ("aniso {} 300.0", 100000, 1e-12)}
+LENGTHS = {"iso": ("iso {} 1.0", 50000, 1e-13), "aniso": ("aniso {} 1.0", 6000, 1e-12), "slow": ("aniso {} 300.0", 20000, 1e-12)}
 
 
 @pytest.mark.parametrize("words, steps, tolerance", LENGTHS.values(), ids=LENGTHS)

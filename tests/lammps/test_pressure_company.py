@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from pressed import REPULSIVE, dipoles_deck, ends, frame, pressed, trimers
-from scenes import largest_change
+from scenes import FORMULATIONS, largest_change
 
 #: for 8 trimers between z = 0 and 4; these forces have energies, and act only along z
 SLIT = """
@@ -60,8 +60,7 @@ def deck(name, dt=0.005, steps=100, words="", **settings):
     return text.replace("fix move all", "fix move guest") if "frozen" in name else text
 
 
-@pytest.mark.parametrize("formulation", ["momentum", "second", "first"])
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name, formulation", [(name, FORMULATIONS[k % 3]) for k, name in enumerate(SCENES)])
 def test_the_energy_is_constant_to_the_order(lmp_tree, name, formulation):
     """With 6 values; all these forces have energies."""
     words = f"formulation {formulation} values 6" + (
@@ -183,7 +182,6 @@ fix walls all wall/harmonic zlo 0.0 50.0 1.0 0.6 zhi 4.0 50.0 1.0 0.6
 fix weight all gravity 1.0 vector 0 0 -1
 """
 GASES = {
-    "a gas": dict(words="iso 1 1 5 ptemp 1", after=BATH),
     "a gas in a slit": dict(
         words="x 1 1 5 y 1 1 5 couple xy ptemp 1", after=WEIGHT + BATH, boundary="p p f"
     ),

@@ -53,14 +53,13 @@ comm_modify cutoff 9.8
 """
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize(
-    "fix, group",
+    "fix, group, ranks",
     [
-        ("gear/quat single", "all"),
-        ("gear/quat custom i_pair", "all"),
-        ("gear/quat molecule", "cut"),
-        ("gear/quat molecule", "few"),
+        ("gear/quat single", "all", 1),
+        ("gear/quat custom i_pair", "all", 2),
+        ("gear/quat molecule", "cut", 2),
+        ("gear/quat molecule", "few", 1),
     ],
 )
 def test_other_bodies_begin_anew(halves, fix, group, ranks):
@@ -81,9 +80,7 @@ fix numbers all property/atom i_number
 GO = "group gone molecule {}\ndelete_atoms group gone compress no\n"
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("gone", [5, 1])
-@pytest.mark.parametrize("style", ["molecule", "custom i_number"])
+@pytest.mark.parametrize("style, gone, ranks", [("molecule", 5, 1), ("molecule", 1, 2), ("custom i_number", 1, 1)])
 def test_bodies_that_are_left_begin_anew(lmp_tree, style, gone, ranks):
     """The run is as if the file contained no fix of that ID."""
     halves = Halves(lmp_tree, 8.0)

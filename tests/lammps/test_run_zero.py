@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scenes import one_after_the_other
-from heated import END, KINDS, TEMP, cluster, continued
+from heated import END, TEMP, cluster, continued
 
 RAMP = "temp 0.4 0.8 0.3"
 SPAN = "start 0 stop 100"
@@ -18,18 +18,17 @@ def ends_of(lmp, runs, words, ranks=1, **settings):
     return [(lmp.folder / f"{name}.end").read_text() for name in names], result
 
 
-@pytest.mark.parametrize("words", ["", TEMP, f"{TEMP} tolerance 1e-9", "tolerance 1e-9"])
-def test_between_runs(lmp_tree, formulation, words):
-    if "tolerance" not in words:  # which excludes that keyword
-        words = f"formulation {formulation} {words}"
+@pytest.mark.parametrize(
+    "words", ["", "formulation second", f"formulation first {TEMP}", TEMP, f"{TEMP} tolerance 1e-9", "tolerance 1e-9"]
+)
+def test_between_runs(lmp_tree, words):
     runs = [f"run 40\n{look}run 60" for look in ("", "run 0\n", "run 0\nrun 0\n")]
     columns = {} if "temp" in words else dict(columns="")
     ends, _ = ends_of(lmp_tree, runs, words, **columns)
     assert ends[0] == ends[1] == ends[2]
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("formulation, kind, ranks", [("momentum", "total", 2), ("second", "separate", 1), ("first", "total", 1)])
 def test_inside_a_ramp(lmp_tree, formulation, kind, ranks):
     runs = [
         f"run 40 {SPAN}\n{look}run 60 {SPAN}" for look in ("", "run 0\n", f"{AGAIN}\n", f"run 0 {SPAN}\n")

@@ -69,8 +69,7 @@ def is_asked_for(table, shape, target=1.5):
     assert temperatures(table, shape) == pytest.approx([target, target], rel=4 * (2 / (3 * BODIES)) ** 0.5)
 
 
-@pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("loop", ["", "loop geom", "dist gaussian mom no", "rot yes"])
+@pytest.mark.parametrize("shape, loop", list(zip(SHAPES, ["", "loop geom", "dist gaussian mom no", "rot yes"])))
 def test_before_the_first_run(lmp_tree, shape, loop):
     """The order of the two commands does not matter, nor a second run."""
     create = CREATE.format(loop)
