@@ -12,7 +12,6 @@ _SECTION = re.compile(r"^(\w+) +\|([^|]*)\|([^|]*)\|([^|]*)\|", re.MULTILINE)
 #: LAMMPS' reader leaves out lines with words, so infinity is replaced by a number
 _NOT_FINITE = re.compile(r"(?<=\s)-?(?:nan|inf)(?=\s)")
 _START = re.compile(r"^Fix gear/quat \S+: start of order \d+ from (\d+) force", re.MULTILINE)
-_VALUES = re.compile(r"^Fix gear/quat \S+: (\d+) values", re.MULTILINE)
 _STEP = re.compile(r"^ *Step ", re.MULTILINE)
 
 
@@ -84,8 +83,3 @@ class Log:
     def start_evaluations(self):
         """Force evaluations that fix gear/quat made to start; 0 without a start."""
         return sum(map(int, _START.findall(self.text)))
-
-    @property
-    def chosen_values(self):
-        """Numbers of values that fix gear/quat has chosen, a list, one for each choice."""
-        return [int(number) for number in _VALUES.findall(self.text)]

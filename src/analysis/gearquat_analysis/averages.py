@@ -284,6 +284,65 @@ def _with_error(find, lag, whole, blocks, without, *more):
     return find(lag, whole, *more), max(errors)
 
 
+# --- the analyses ---------------------------------------------------------------------------------
+# a function of one analysis returns name -> Estimate; {} if the run does not have what it takes
+class _Run(NamedTuple):
+    """Finished ``poses``, ``weights`` of frames, and the series of ``temperatures`` and ``of_box``."""
+
+    poses: object
+    weights: np.ndarray
+    warm: dict
+    box: dict
+
+    def means(self, series):
+        return {name: of_series(values, self.weights) for name, values in series.items()}
+
+
+def _temperatures(run):
+    named = {f"temperature of {name}": series for name, series in run.warm.items()}
+    if "rotation" in run.warm:
+        named[DIFFERENCE] = run.warm["translation"] - run.warm["rotation"]
+    return run.means(named)
+
+
+def _fluctuations(run):
+    if not run.warm:
+        return {}
+    found, temperature = {}, float(np.average(run.warm["translation"], weights=run.weights))
+    if run.box:
+        found["compressibility"] = compressibility(run.poses, run.box["volume"], temperature, run.weights)
+    if np.any(getattr(getattr(run.poses, "atoms", None), "charges", 0.0)):
+        found["dielectric constant"] = dielectric_constant(run.poses, temperature, run.weights)
+    return found
+
+
+def _diffusion(poses, of, dimensions):
+    results = poses.results
+    return {f"diffusion coefficient{of}": diffusion(results.time, mapped.own_motion(results), dimensions)}
+
+
+def _correlation_times(poses, of, _dimensions):
+    q, _, axes = correlations.turning(poses)
+    every = [(group, axis, order) for group, axis in axes.items() for order in (1, 2)]
+    words, time = f"correlation time{of + ',' if of else ' of'}", poses.results.time
+    return {f"{words} {axes_named(group)}, order {n}": rotational_time(time, q, axis, n) for group, axis, n in every}
+
+
+#: (function of a _Run, result whose unit its averages have, by default their names)
+OF_ALL_FRAMES = ((_temperatures, "temperature"), (lambda run: run.means(run.box), None), (_fluctuations, None))
+#: the same, of the poses of one kind at even times, words for the kind, and dimensions
+OF_MOTION = ((_diffusion, "diffusion coefficient"), (_correlation_times, "correlation time"))
+
+
+def _listed(analyses, unit, *arguments):
+    """List of Average of all ``analyses``; ``unit``: that of Poses."""
+    return [
+        Average(name, value, error, unit(result or name), why)
+        for function, result in analyses
+        for name, (value, error, why) in function(*arguments).items()
+    ]
+
+
 def averages(poses):
     """All Averages that can be computed from finished ``Poses`` or ``TablePoses``.
 
@@ -293,28 +352,9 @@ def averages(poses):
     coefficients and correlation times are left out with a warning.  In a mixture each of the ``kinds`` has its own
     diffusion coefficient and correlation times.
     """
-    results = poses.results
-    times = results.time
-    weights = weights_of(times)
-    found = Averages()
-    warm, box = temperatures(poses), of_box(poses)
-    if "rotation" in warm:
-        warm = {**warm, DIFFERENCE: warm["translation"] - warm["rotation"]}
-    for name, series in warm.items():
-        value, error, why = of_series(series, weights)
-        name = name if name == DIFFERENCE else f"temperature of {name}"
-        found.append(Average(name, value, error, poses.unit("temperature"), why))
-    for name, series in box.items():
-        value, error, why = of_series(series, weights)
-        found.append(Average(name, value, error, poses.unit(name), why))
-    if warm:
-        temperature = float(np.average(warm["translation"], weights=weights))
-        if box:
-            of_volume = compressibility(poses, box["volume"], temperature, weights)
-            found.append(Average("compressibility", *of_volume[:2], poses.unit("compressibility"), of_volume.why))
-        if np.any(getattr(getattr(poses, "atoms", None), "charges", 0.0)):
-            constant = dielectric_constant(poses, temperature, weights)
-            found.append(Average("dielectric constant", *constant[:2], "", constant.why))
+    times = poses.results.time
+    run = _Run(poses, weights_of(times), temperatures(poses), of_box(poses))
+    found = Averages(_listed(OF_ALL_FRAMES, poses.unit, run))
     try:
         correlations.lags(times)
     except ValueError as error:
@@ -322,21 +362,8 @@ def averages(poses):
         return found
     if too_many(poses):
         warnings.warn("there are too many kinds of bodies: diffusion and correlation times are averages over all bodies", stacklevel=2)
-    dimensions = dimension(results)
+    dimensions = dimension(poses.results)
     for kind in kinds(poses):
-        found += _of_motion(of_kind(poses, kind), f" of {kind.name}" if kind.name else "", dimensions)
-    return found
-
-
-def _of_motion(poses, of, dimensions):
-    """Diffusion coefficient and correlation times of the bodies of one kind; ``of`` is the name of the kind."""
-    results, name = poses.results, "diffusion coefficient"
-    value, error, why = diffusion(results.time, mapped.own_motion(results), dimensions)
-    found = [Average(f"{name}{of}", value, error, poses.unit(name), why)]
-    q, _, axes = correlations.turning(poses)
-    for group, axis in axes.items():
-        for order in (1, 2):
-            value, error, why = rotational_time(results.time, q, axis, order)
-            name = f"correlation time{of + ',' if of else ' of'} {axes_named(group)}, order {order}"
-            found.append(Average(name, value, error, poses.unit("correlation time"), why))
+        of = f" of {kind.name}" if kind.name else ""
+        found += _listed(OF_MOTION, poses.unit, of_kind(poses, kind), of, dimensions)
     return found
