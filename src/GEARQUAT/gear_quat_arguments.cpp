@@ -110,7 +110,7 @@ void Arguments::parse_keywords(int narg, char **arg)
   if (is_on("tolerance", "")) check_control();
   if (is_on("langevin", "")) check_random();
   check_pressure();
-  thermostat.may_wait = !mol.empty();
+  thermostat.takes_in = !mol.empty();
   if (!infile.empty()) reinit = false;    // values in a file are not recomputed from the atoms
 }
 

@@ -135,7 +135,7 @@ struct ThermostatWords {
   bool separate = false;
   int seed = 0;             ///< of langevin; 0: chains
   int subtracted = -1;      ///< by fix_modify extra/dof; negative: as the scene is
-  bool may_wait = false;    ///< bodies may be inserted later, so a run may start without any
+  bool takes_in = false;    ///< what other fixes insert becomes bodies
 
   bool is_random() const { return seed > 0; }
   const char *keyword() const { return is_random() ? "langevin" : "temp"; }

@@ -184,7 +184,7 @@ void Bath::refuse_bodies() const
                "all, so its rotation has no temperature; turn off all three, or define a second "
                "fix without this keyword for such bodies",
                words.keyword(), partly);
-  if (words.may_wait && bodies.number() == 0) return;
+  if (bodies.number() == 0) return;
   if (!temperature.has_translation() && temperature.freedoms[ROTATION] == 0.0)
     error->all(FLERR,
                "Fix gear/quat {}: keywords force and torque turn off all degrees of freedom of "

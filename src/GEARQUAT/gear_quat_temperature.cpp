@@ -120,7 +120,7 @@ std::string Temperature::find_outside() const
   const auto with_forces = fixes_with_forces(lmp, fix);
   if (!with_forces.empty()) return name_of(with_forces.front()) + " may exert forces";
   for (const auto *other : modify->get_fix_list())
-    if (!words.may_wait && known(Fact::EXCHANGE, other))
+    if (!words.takes_in && known(Fact::EXCHANGE, other))
       return name_of(other) + " may insert atoms";
   if (known_pair(Fact::BACKGROUND, lmp->force))
     return std::string("pair style ") + lmp->force->pair_style + " exerts forces from outside";
