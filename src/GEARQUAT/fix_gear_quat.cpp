@@ -156,7 +156,7 @@ void FixGearQuat::init()
 void FixGearQuat::deform(int flag)
 {
   if (flag == 0 && is_minimized()) minimization.put_back();
-  flag == 0 ? driven_box.begin_remap() : driven_box.end_remap();
+  flag == 0 ? ownership.note_box() : driven_box.end_remap();
 }
 
 void FixGearQuat::setup_pre_exchange()

@@ -57,7 +57,19 @@ Barostat::Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sit
     fix(fix), bodies(bodies), sites(sites), asked(pressure), temperature(temperature),
     box(lmp, pressure.fixed)
 {
-  if (asked.any()) virial.emplace(lmp, fix, sites);
+  if (!asked.any()) return;
+  id = std::string(fix->id) + "_virial";
+  modify->add_compute(id + " all pressure NULL pair bond angle dihedral improper kspace");
+}
+
+Barostat::~Barostat()
+{
+  if (moves() && own()) modify->delete_compute(id);
+}
+
+Compute *Barostat::own() const
+{
+  return modify->get_compute_by_id(id);
 }
 
 void Barostat::set_scheme(const Scheme &scheme)
@@ -158,7 +170,7 @@ Upper Barostat::drive() const
   const double v = box.volume(), trace = tensor.trace();
   for (int k = 0; k < Upper::SIZE; ++k) {
     if (!asked.on[k]) continue;
-    double push = tensor[k] + virial->value()[k] - aim[k] * v;
+    double push = tensor[k] + virial[k] - aim[k] * v;
     if (k < 3) push += weight_of(k) * trace;
     found[k] = push / mass[k];
   }
@@ -249,17 +261,6 @@ void Barostat::choose_coefficients(CorrectorCoefficients::Array &c, int values) 
   for (int j = 0; times && j < values; ++j) c[j] = 0.5 * (j + 1) * times->coefficients().c[j + 1];
 }
 
-/// The scale of energies is that of a body's exact sum.
-void Barostat::measure_virial(double **f)
-{
-  if (virial) virial->measure(f, temperature.unit_of_energies());
-}
-
-bool Barostat::others_ask_for_virial() const
-{
-  return !virial || virial->others_ask(update->ntimestep);
-}
-
 void Barostat::measure(const Friction &alpha)
 {
   if (!moves()) return;
@@ -314,7 +315,7 @@ void Barostat::end_step()
 {
   if (!moves()) return;
   show_box(false);
-  virial->request(update->ntimestep + 1);
+  request_virial();
 }
 
 void Barostat::flip()
@@ -353,7 +354,7 @@ double Barostat::error_of_step(bool as_energy, double h) const
 double Barostat::energy(double heat) const
 {
   return mean_of(target()) * box.volume() + heat + 0.5 * twice_kinetic() -
-      virial->value().contracted(correction);
+      virial.contracted(correction);
 }
 
 double Barostat::element(int n) const
@@ -361,7 +362,7 @@ double Barostat::element(int n) const
   const double to_pressure = force->nktv2p * force->mvv2e;
   if (n < P_TARGET) {
     if (!(box.volume() > 0.0)) return 0.0;    // there was no run yet
-    const Upper found = (temperature.tensor + virial->value()).scaled(to_pressure / box.volume());
+    const Upper found = (temperature.tensor + virial).scaled(to_pressure / box.volume());
     return n == PRESSURE ? found.trace() / domain->dimension : found[PLACES[n - P_COMPONENT]];
   }
   if (n == P_TARGET) return to_pressure * mean_of(target());
@@ -399,7 +400,7 @@ void Barostat::refuse_others() const
 void Barostat::refuse_scene() const
 {
   if (!moves()) return;
-  virial->refuse_scene();
+  refuse_forces();
   refuse_others();
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR,
@@ -445,7 +446,7 @@ void Barostat::begin_run(bool anew, double h)
   if (anew) refer_to_box(h);
   correction = Upper();    // forces are evaluated in the corrected box
   since = 0.0;
-  virial->request(update->ntimestep + 1);
+  request_virial();
 }
 
 const char *Barostat::reason_to_start_anew() const
@@ -611,7 +612,7 @@ void Barostat::refuse_box(const Upper &matrix) const
 
 void Barostat::fields(Fields &v)
 {
-  v(width, made, correction, *virial, box, cell, last_drive, against, along);
+  v(width, made, correction, virial, box, cell, last_drive, against, along);
   if (times) v(*times);
   if (!v.reads()) return;
   present = made;
@@ -630,28 +631,12 @@ static constexpr int PAIR_BY_PAIR = 1, BY_FORCES = 2;
 
 static constexpr double LARGE = 1048576.0;    // 2^20
 
-MolecularVirial::MolecularVirial(LAMMPS *lmp, const Fix *fix, const Sites &sites) :
-    Pointers(lmp), id(std::string(fix->id) + "_virial"), fix(fix), sites(sites)
-{
-  modify->add_compute(id + " all pressure NULL pair bond angle dihedral improper kspace");
-}
-
-MolecularVirial::~MolecularVirial()
-{
-  if (own()) modify->delete_compute(id);
-}
-
-Compute *MolecularVirial::own() const
-{
-  return modify->get_compute_by_id(id);
-}
-
 static bool counts(const Fix *other)
 {
   return other->virial_global_flag && other->thermo_virial;
 }
 
-void MolecularVirial::refuse_scene() const
+void Barostat::refuse_forces() const
 {
   if (!own() || !own()->pressflag)
     error->all(
@@ -676,21 +661,25 @@ void MolecularVirial::refuse_scene() const
   }
 }
 
-void MolecularVirial::request(bigint step) const
+/// LAMMPS will compute it in the next step.
+void Barostat::request_virial() const
 {
-  own()->addstep(step);
+  own()->addstep(update->ntimestep + 1);
 }
 
-bool MolecularVirial::others_ask(bigint step) const
+bool Barostat::others_ask_for_virial() const
 {
+  if (!moves()) return true;
   for (auto *one : modify->get_compute_list())
-    if ((one->pressflag || one->pressatomflag) && id != one->id && one->matchstep(step))
+    if ((one->pressflag || one->pressatomflag) && id != one->id &&
+        one->matchstep(update->ntimestep))
       return true;
   return false;
 }
 
-int MolecularVirial::flag() const
+int Barostat::vflag() const
 {
+  if (!moves()) return 0;
   return force->newton_pair ? BY_FORCES : PAIR_BY_PAIR;
 }
 
@@ -700,8 +689,10 @@ template <class Style> static void add_virial(const Style *style, double (&sum)[
   for (int k = 0; k < 6; ++k) sum[k] += style->virial[k];
 }
 
-void MolecularVirial::measure(double **f, double energy)
+/// The scale of energies is that of a body's exact sum.
+void Barostat::measure_virial(double **f)
 {
+  if (!moves()) return;
   double styles[6] = {};
   add_virial(force->pair, styles);
   if (atom->molecular != Atom::ATOMIC) {
@@ -713,7 +704,7 @@ void MolecularVirial::measure(double **f, double energy)
   for (int i = 0; modify->fix[i] != fix; ++i)
     if (counts(modify->fix[i])) add_virial(modify->fix[i], styles);
   ExactSum of_arms[6];
-  const double scale = LARGE * ExactSum::scale_of(energy);
+  const double scale = LARGE * ExactSum::scale_of(temperature.unit_of_energies());
   sites.add_arm_virial(f, of_arms, scale);
   sum_over_ranks(of_arms, world);
   const auto all_styles = over_ranks(MPI_SUM, styles, world);

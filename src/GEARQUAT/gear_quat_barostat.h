@@ -55,37 +55,6 @@ class Compute;
 
 namespace LAMMPS_NS::GearQuat {
 
-class MolecularVirial : protected Pointers {
- public:
-  /// Adds compute ID_virial, which requests the virial from LAMMPS.
-  MolecularVirial(LAMMPS *lmp, const Fix *fix, const Sites &sites);
-  ~MolecularVirial() override;
-
-  /// Ends the run if the compute was deleted or replaced since the last run, or if the force of
-  /// another fix counts and acts later, or does not count and acts before.
-  void refuse_scene() const;
-  /// LAMMPS will compute V in that step.
-  void request(bigint step) const;
-  /// Computes it from V and the forces f on atoms, in post_force() of this fix.  energy: of all
-  /// bodies, approximate.  Collective.
-  void measure(double **f, double energy);
-  /// The virial in units of mass times velocity squared.
-  const Upper &value() const { return virial; }
-  template <class V> void fields(V &v) { v(virial); }
-  /// True if another compute requests a virial in this step.
-  bool others_ask(bigint step) const;
-  /// The vflag for the evaluation of forces.
-  int flag() const;
-
- private:
-  std::string id;
-  const Fix *fix;
-  const Sites &sites;
-  Upper virial;
-
-  Compute *own() const;
-};
-
 /// The nodes of a start, centered at the present time.
 struct StartNodes {
   const Collocation &collocation;
@@ -106,10 +75,12 @@ class Barostat : protected Pointers {
     ELEMENTS
   };
 
+  /// With a pressure it adds compute ID_virial, which requests the virial from LAMMPS.
   Barostat(LAMMPS *lmp, const Fix *fix, Bodies &bodies, const Sites &sites,
            const PressureWords &pressure, Temperature &temperature);
+  ~Barostat() override;
 
-  bool moves() const { return virial.has_value(); }
+  bool moves() const { return !id.empty(); }
   void set_scheme(const Scheme &scheme);
 
   // before a run
@@ -197,7 +168,7 @@ class Barostat : protected Pointers {
   void seed(const StartNodes &nodes, int pairs);
   void seed_local(double h, int terms, double xi);
   /// LAMMPS' vflag for the evaluation of forces at nodes.
-  int vflag() const { return virial ? virial->flag() : 0; }
+  int vflag() const;
 
   /// Ends the run: the chain of the box cannot follow it.
   [[noreturn]] void refuse_speed() const;
@@ -221,7 +192,8 @@ class Barostat : protected Pointers {
   const Sites &sites;
   PressureWords asked;
   Temperature &temperature;
-  std::optional<MolecularVirial> virial;    ///< of a box that moves
+  std::string id;    ///< of the compute; empty: the box does not move
+  Upper virial;      ///< of centers of mass, in units of mass times velocity squared
   Box box;
   CellHistory cell, kept;
   std::optional<RememberedLoads> times;    ///< with a changing step: of the last drives of the box
@@ -267,6 +239,9 @@ class Barostat : protected Pointers {
   void show(const Upper &deformation, const Upper &its_rate);
 
   void show_box(bool forces);
+  Compute *own() const;
+  void request_virial() const;
+  void refuse_forces() const;
   void refuse_others() const;
   void refuse_box(const Upper &matrix) const;
   void tell_freedoms();

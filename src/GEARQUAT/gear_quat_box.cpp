@@ -244,11 +244,6 @@ void DrivenBox::init()
    atoms are remapped with the box
 ------------------------------------------------------------------------- */
 
-void DrivenBox::begin_remap()
-{
-  ownership.note_box();
-}
-
 void DrivenBox::end_remap()
 {
   const double *before = ownership.box().data();

@@ -149,8 +149,7 @@ class DrivenBox : protected Pointers {
   /// True if another fix changes the box in this run.
   bool any() const { return driver; }
 
-  /// Before and after another fix remaps atoms with the box.  Collective.
-  void begin_remap();
+  /// Another fix has remapped atoms with the box, from Ownership::box().  Collective.
   void end_remap();
   /// Called before a step, and when the box may have changed without a remap.
   void follow();

@@ -103,32 +103,26 @@ std::vector<GivenLine> parse_file(const std::string &filename)
   std::vector<GivenLine> lines;
   std::map<tagint, int> seen;
   std::string text;
-  std::string announced;
-  bigint expected = 0;
+  bigint expected = -1;
   for (int n = 1; std::getline(file, text); ++n) {
     const auto words = words_of(text);
     if (words.empty()) continue;
     const std::string where = "file " + filename + ", line " + std::to_string(n);
-    if (announced.empty()) {
-      announced = words[0];
+    if (expected < 0) {
       if (words.size() != 1 || !utils::is_integer(words[0]))
         fail(where + ": the first line must be the number of bodies");
       expected = integer(words[0], where, "the number of bodies is", MAXSMALLINT);
       continue;
     }
     lines.push_back(parse_line(words, where));
-    const tagint id = lines.back().id;
-    if (seen.count(id))
-      fail(where + ": body " + words[0] + " was given on line " + std::to_string(seen[id]) +
+    int &line = seen[lines.back().id];
+    if (line > 0)
+      fail(where + ": body " + words[0] + " was given on line " + std::to_string(line) +
            " already");
-    seen[id] = n;
+    line = n;
   }
-  if (announced.empty())
-    fail("file " + filename +
-         " is empty: its first line must be the number "
-         "of bodies");
   if (expected != (bigint) lines.size())
-    fail("file " + filename + " announces " + announced + " bodies and has " +
+    fail("the first line of file " + filename + " is not the number of its bodies, " +
          std::to_string(lines.size()));
   return lines;
 }

@@ -271,8 +271,7 @@ TaylorSeries Collocation::series(const Workspace &w, int pairs) const
   expand(w, pairs, c[0]);
   const int terms = momentum_of(w, pairs, 1, series.momentum);
   std::copy_n(w.q, 4, q[0]);
-  if (w.body.rotational_freedoms() > 0)
-    Turn::coefficients(w.body, series.momentum, terms, w.q, q);
+  if (w.body.rotational_freedoms() > 0) Turn::coefficients(w.body, series.momentum, terms, w.q, q);
   for (int j = 0; j < TaylorSeries::MAX_TERMS; ++j) {
     for (int i = 0; i < 3; ++i) series.c[j][i] = j < series.terms ? c[j][i] : 0.0;
     std::copy_n(q[j], 4, series.c[j] + 3);

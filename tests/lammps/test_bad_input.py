@@ -182,12 +182,12 @@ variable equal equal 1.0
 """
 
 INFILES = {
-    "": "file bodies is empty",
+    "": "the first line of file bodies is not the number of its bodies, 0",
     "x\n": "file bodies, line 1: the first line must be the number of bodies",
     "1 2\n": "file bodies, line 1: the first line must be the number of bodies",
-    "-1\n": "file bodies announces -1 bodies and has 0",
-    f"2\n{ID1}\n": "file bodies announces 2 bodies and has 1",
-    f"1\n{ID1}\n{ID1.replace('1', '2', 1)}\n": "file bodies announces 1 bodies and has 2",
+    "-1\n": "the first line of file bodies is not the number of its bodies, 0",
+    f"2\n{ID1}\n": "the first line of file bodies is not the number of its bodies, 1",
+    f"1\n{ID1}\n{ID1.replace('1', '2', 1)}\n": "the first line of file bodies is not the number of its bodies, 2",
     f"2\n{ID1}\n{ID1}\n": "file bodies, line 3: body 1 was given on line 2 already",
     f"1\n{ID1} 0\n": "file bodies, line 2 has 21 words instead of 20",
     f"# text\n\n1\n{ID1[:-2]}\n": "file bodies, line 4 has 19 words instead of 20",
@@ -200,7 +200,7 @@ INFILES = {
     f"1\n{ID1[:-1]}99999999999\n": "file bodies, line 2: image flag 99999999999 is too large",
     f"1\n{ID1.replace(' 1 1 1 0 0 0', ' 1 1 1 5 0 0')}\n": "tensor of body 1 has a negative principal",
     f"1\n7{ID1[1:]}\n": "no atom belongs to body 7",
-    f"{10**30}\n{ID1}\n": f"file bodies announces {10**30} bodies and has 1",
+    f"{10**30}\n{ID1}\n": "the first line of file bodies is not the number of its bodies, 1",
     f"1\n{ID1} '\n": "file bodies, line 2 has 21 words instead of 20",
     f"1\n{ID1.replace('0.33', '0.33' + chr(0) + '5')}\n": "file bodies, line 2: '0.33' is not a number",
     f"1\n{ID1.replace(' 1 1 1 ', ' 1e308 1e308 1e308 ')}\n": "body 1 are not finite numbers",

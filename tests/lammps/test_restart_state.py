@@ -171,7 +171,6 @@ NOT_IN_A_FILE = {
     "history ScalarHistory": {},
     "cell CellHistory": {COMMAND: "n", STEP: "c weight total"},
     "box Box": {COMMAND: "fixed", DERIVED: "m inverse change inverse_change"},
-    "barostat MolecularVirial": {COMMAND: "id", OTHERS: "fix sites"},
     "tolerance TimeStep": {},
     "remembered_loads RememberedLoads": {
         COMMAND: "carries",
@@ -205,7 +204,7 @@ NOT_IN_A_FILE = {
         MESSAGES: "told warned",
     },
     "barostat Barostat": {
-        COMMAND: "asked fastest",
+        COMMAND: "asked fastest id",
         OTHERS: "fix bodies sites temperature",
         DERIVED: "rate of_bodies",
         RUN: "since cell_at_nodes time_of_node present",
