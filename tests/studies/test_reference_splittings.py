@@ -1,7 +1,5 @@
 """Splittings with exact free rotation and a symmetric multistep method: orders by slope, the exact top, counts."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -103,19 +101,6 @@ def test_order_under_weak_forces(splitting, order):
     """The order of SABA4 is 8, and that of ABA(10,6,4) 10, in the limit of weak forces."""
     assert oscillator_order(splitting) == pytest.approx(splitting.order, abs=0.3)
     assert weak_order(splitting, (8, 12)) == pytest.approx(order, abs=0.5)
-    for name in ("kicks", "drifts"):
-        for place in range((len(getattr(splitting, name)) - 1) // 2):
-            assert weak_order(spoiled(splitting, name, place), (8, 12)) < order / 2
-
-
-def spoiled(splitting, name, place):
-    """The Splitting with an error of 1 % in one entry and its mirror image; the sum stays 1."""
-    parts = np.array(getattr(splitting, name))
-    change = 0.01 * parts[place]
-    parts[[place, -1 - place]] += change
-    middle = [(len(parts) - 1) // 2, len(parts) // 2]
-    parts[middle] -= 2 * change / len(set(middle))
-    return replace(splitting, **{name: tuple(parts)})
 
 
 def multistep_order(counts=(300, 450)):
@@ -128,14 +113,12 @@ def multistep_order(counts=(300, 450)):
     return [slopes(own, counts)[0] for own in np.transpose(errors)]
 
 
-def test_order_of_the_multistep_method(monkeypatch):
+def test_order_of_the_multistep_method():
     assert np.allclose(multistep_order(), 8, atol=0.7)
     weights = multistep.adams_moulton(9)
     assert [(weights * np.arange(-8.0, 1.0) ** k).sum() for k in range(9)] == pytest.approx(
         [-((-1) ** (k + 1)) / (k + 1) for k in range(9)], abs=1e-8
     )
-    monkeypatch.setattr(multistep, "B", multistep.B * np.where(np.arange(8) == 4, 1.01, 1))
-    assert max(multistep_order()[:2]) < 1
 
 
 # --- motion ---------------------------------------------------------------------------------------
@@ -159,12 +142,9 @@ def test_a_free_top_turns_exactly(moments, omega, time):
     free = Problem("top", bodies, FreeField(), start)
     exact, motion = exact_state(free, time), Motion(free)
     limit = 1e-13 * max(1, np.abs(omega).max() * abs(time))
-    for wrong in (1, 1.01):
-        motion = Motion(free)
-        motion.drift(wrong * time)
-        off = np.abs(motion.omega_body - exact.omega_body.astype(float)).max() / np.abs(omega).max()
-        angle = state_errors(free, exact, motion.state).rms_angle
-        assert max(off, angle) < limit if wrong == 1 else max(off, angle) > 1e3 * limit
+    motion.drift(time)
+    assert np.abs(motion.omega_body - exact.omega_body.astype(float)).max() < limit * np.abs(omega).max()
+    assert state_errors(free, exact, motion.state).rms_angle < limit
 
 
 # --- work -----------------------------------------------------------------------------------------
