@@ -85,22 +85,9 @@ def test_errors_of_a_jackknife_are_those_of_a_mean():
 def test_extrapolation_removes_an_error_of_second_order():
     samples = made_up()[:COUNT]
     fine, coarse = ([replace(s, density=1.0 + 0.01 * h**2 + 1e-4 * k) for k, s in enumerate(samples)] for h in (1.0, 2.0))
-    (exact, _), (mean, error) = quantities.DENSITY.of(samples), quantities.DENSITY.of(fine)
+    _, error = quantities.DENSITY.of(fine)
     found = quantities.extrapolated(fine, coarse, quantities.DENSITY)
     assert found[0] == pytest.approx(1.0 + 1e-4 * np.mean(range(COUNT))) and found[1] == pytest.approx(error * math.sqrt(17) / 3)
-
-
-def test_the_maximum_of_a_parabola():
-    """Densities on a parabola with the expansion of the samples: errors of the stated size scatter its maximum by 1 K."""
-    samples = water.of_series(made_up())[plan.LONG["tip4p"]]
-    needed, rng = quantities.needed_for_maximum(samples), np.random.default_rng(6)
-    curvature = 0.998 * 1e-4 * quantities.EXPANSION.of(samples)[0] / (plan.TEMPERATURE - plan.MAXIMUM)
-    warm = np.array(plan.FITTED) - plan.MAXIMUM
-    found = []
-    for _ in range(2000):
-        second, first, _ = np.polyfit(warm, -0.5 * curvature * warm**2 + needed * rng.normal(size=5), 2)
-        found.append(-first / (2 * second))
-    assert np.median(np.abs(found)) == pytest.approx(0.6745, rel=0.15)
 
 
 def test_costs():

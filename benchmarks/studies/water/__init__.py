@@ -113,16 +113,6 @@ def cost_table(found, rounds):
     return Table(("method and step", *header, "relative cost"), rows)
 
 
-def for_maximum(found, rounds):
-    """(error of the densities in g/mL, core-hours) of ``fix gear/quat`` for a temperature of maximum density to 1 K.
-
-    Densities at the coldest and warmest of five temperatures are taken to need as long as those of COLD and LONG.
-    """
-    needed = quantities.needed_for_maximum(found[LONG["tip4p"]])
-    ns = np.mean([duration(found[series], DENSITY, needed) for series in (LONG["tip4p"], COLD[0])])
-    return needed, 5 * ns * per_square({OURS: min(rounds[OURS])}, OURS, 2.0) / 3600
-
-
 def widest(error, *groups):
     """Largest allowed deviation of a value with this standard error, from this number of groups of samples."""
     freedoms = sum(len(samples) - 1 for samples in groups)
@@ -193,7 +183,6 @@ def find(results):
     context["cold"] = [DENSITY.text(found[series]) for series in COLD]
     context["cold_apart"] = cell(difference(*(DENSITY.of(found[series]) for series in COLD)), "+")
     context["cold_temperature"] = COLD[0].temperature
-    context["maximum"] = for_maximum(found, results.seconds)
     tables = {"water": table(found, AVERAGES), "fluctuations": table(found, FLUCTUATIONS, lengths=False)}
     tables |= {"volume": volume_table(found), "durations": durations(found), "costs": cost_table(found, results.seconds)}
     pictures = {"water": panels(found)}

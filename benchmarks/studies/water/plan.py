@@ -57,8 +57,6 @@ FIXED = tuple(Series("tip4p", OURS, dt, ensemble=NVT) for dt in (2.0, 0.5))
 RIVAL = Series("tip4p", RIGID, 2.0, ensemble=NVT)
 #: the same long and short step as above in cold water
 COLD = tuple(Series("tip4p", method, dt, temperature=250.0) for method, dt in ((OURS, 2.0), (SHAKE, 0.5)))
-#: published temperature of maximum density of TIP4P/2005 (Abascal and Vega 2005), K; temperatures of a fit that finds it
-MAXIMUM, FITTED = 278.0, (255.0, 266.5, 278.0, 289.5, 301.0)
 #: Series -> nanoseconds that it should have; the series that lacks the largest part comes next
 TARGETS = {
     LONG["tip4p"]: 6.0,

@@ -11,7 +11,7 @@ from gearquat_analysis.tables import with_error
 from gearquat_analysis.units import UNITS
 
 from .frames import AXES
-from .plan import FITTED, MAXIMUM, MODELS, TEMPERATURE
+from .plan import MODELS, TEMPERATURE
 
 REAL = UNITS["real"]
 KT = REAL.boltzmann * TEMPERATURE
@@ -154,16 +154,6 @@ def extrapolated(fine, coarse, quantity):
 def difference(one, other):
     """(value, error) of the difference of two (value, error)."""
     return one[0] - other[0], math.hypot(one[1], other[1])
-
-
-def needed_for_maximum(samples):
-    """Standard error of densities, g/mL, with which a fit gives the temperature of maximum density to 1 K.
-
-    Five temperatures FITTED and a parabola are assumed.  Its curvature follows from the thermal expansion of the samples at
-    TEMPERATURE, which grows in proportion to the distance from the MAXIMUM.
-    """
-    curvature = DENSITY.of(samples)[0] * 1e-4 * EXPANSION.of(samples)[0] / (TEMPERATURE - MAXIMUM)
-    return abs(curvature) * float(np.sqrt(np.sum((np.array(FITTED) - np.mean(FITTED)) ** 2)))
 
 
 def duration(samples, quantity, error):
