@@ -480,7 +480,7 @@ def test_what_lammps_says_is_told_whatever_the_budget(monkeypatch):
 def test_cost_of_a_deck_that_equilibrates(tmp_path):
     """The first run that can be measured is found, and the other runs are executed once."""
     path = pppm_water.write(tmp_path, side=5, steps=100, cutoff=5.0)
-    result = CliRunner().invoke(cost_command, [str(path), "--budget", "20", "--out", str(tmp_path)])
+    result = CliRunner().invoke(cost_command, [str(path), "--budget", "8", "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
     assert "executed once, and all trials start from their end" in result.output
     assert "your fix, as it is" in result.output and "T trans - T rot (K)" in result.output

@@ -278,7 +278,7 @@ def test_every_keyword_of_the_rigid_fixes_is_known(rigid_examples):
 def test_cost_of_an_example_of_lammps(rigid_examples):
     """Each recommended cost is below the cost of fix rigid, as far as the cut-off of the potential allows."""
     with Deck(rigid_examples / "rigid" / "in.rigid") as deck:
-        costs = measure(deck, Budget(20.0), errors=[1e-3], time=0.05, timings=2)
+        costs = measure(deck, Budget(10.0), errors=[1e-3], time=0.05, timings=2)
     own, best = costs.rows[0].own, costs.rows[0].best
     assert own.evaluations > 5 * best.evaluations
     (line,) = deck.fix_lines(best.method)
