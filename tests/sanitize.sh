@@ -4,7 +4,7 @@
 SUPPRESSIONS="$ROOT/tests/suppressions"
 
 # AddressSanitizer writes what it finds into files, for tests expect many runs to fail anyway. The other one
-# writes to stderr, whatever it is told, if both are there: see harness_passes and tests/running.py. A run goes on after
+# writes to stderr, whatever it is told, if both are there: see harness_passes and tests/support/running.py. A run goes on after
 # undefined behaviour, so that one run finds all of it.
 watch_reports() {
   FOUND="$ROOT/build/sanitize"

@@ -13,7 +13,7 @@ from benchmarks.engine.page import markdown_table
 from benchmarks.engine.provenance import system
 from benchmarks.engine.publish import write_block
 
-from running import ROOT, make_lmp_wheel
+from support.running import ROOT, make_lmp_wheel
 
 COMMAND = "tests/run versions --publish"
 #: row -> how GEARQUAT gets into that LAMMPS

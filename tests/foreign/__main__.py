@@ -16,7 +16,7 @@ import time
 from collections import Counter
 
 from benchmarks.engine.provenance import commit
-from running import ROOT, tree_source
+from support.running import ROOT, tree_source
 
 from . import beside, decks, engine, scene, selfcheck, suffixes, yamls
 from .page import RELEASES, page

@@ -9,7 +9,7 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from running import Result
+from support.running import Result
 
 from . import convert
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lammps_gearquat.launch import LammpsError
 from lammps_gearquat.trials.worker import Worker
-from running import OPEN_MPI_LAUNCHER, Lammps, make_lmp_wheel, python_environment
+from support.running import OPEN_MPI_LAUNCHER, Lammps, make_lmp_wheel, python_environment
 
 from . import scene
 from .worker import Answer, run_job

@@ -8,7 +8,7 @@ import time
 from collections import Counter
 from dataclasses import dataclass, field
 
-from running import ONLY_TREE, TREE_BUILD, UNDEFINED, python_environment
+from support.running import ONLY_TREE, TREE_BUILD, UNDEFINED, python_environment
 
 IN_A_PROCESS = 1000
 

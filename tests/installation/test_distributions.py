@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from running import MPI_ENVIRONMENT, ROOT, Lammps
+from support.running import MPI_ENVIRONMENT, ROOT, Lammps
 
 ENVIRONMENT = {**os.environ, "CMAKE_CXX_COMPILER_LAUNCHER": "ccache"}
 INSTALL = (ROOT / "doc" / "install.md").read_text()

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from running import OPEN_MPI_ENVIRONMENT, OPEN_MPI_LAUNCHER, ROOT, Lammps, tree_source
+from support.running import OPEN_MPI_ENVIRONMENT, OPEN_MPI_LAUNCHER, ROOT, Lammps, tree_source
 from shell import CORES, do
-from thrown import DECK, assert_thrown
+from support.thrown_body import DECK, assert_thrown
 
 INSTALL = (ROOT / "doc" / "install.md").read_text()
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from scenes import FORMULATIONS, water_data
+from support.scenes import FORMULATIONS, water_data
 
 
 @pytest.fixture(params=FORMULATIONS)

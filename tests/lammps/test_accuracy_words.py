@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from scenes import WATER_MASSES, last_frame, restarted, two_molecules, water, whole_deck
+from support.scenes import WATER_MASSES, last_frame, restarted, two_molecules, water, whole_deck
 
 LADDER = [("first", 3), ("first", 6), ("first", 8), ("second", 4), ("second", 9), ("second", 12)]
 ERRORS = "f_move[5] f_move[6] f_move[7] f_move[8]"

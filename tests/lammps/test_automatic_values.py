@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from scenes import last_frame, one_after_the_other, placed, restarted, water
+from support.scenes import last_frame, one_after_the_other, placed, restarted, water
 
 CHOSEN = re.compile(r"Fix gear/quat move: (\d+) values(?: \(velocity Verlet\))?( and corrector gear)?, (.*)")
 SHORT, LONG = 0.5, 3.0  # fs, on either side of the limit in these boxes of water

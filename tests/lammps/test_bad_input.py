@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from scenes import two_molecules
+from support.scenes import two_molecules
 
 ID1 = "1 3.0 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0"
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import last_frame, one_after_the_other, restarted, two_molecules, water, water_data
+from support.scenes import last_frame, one_after_the_other, restarted, two_molecules, water, water_data
 
 ANEW = "forces have changed since the last step; histories are rebuilt"
 FALLBACK = "start with known forces only (order 2), because"

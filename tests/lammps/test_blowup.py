@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from scenes import frames, two_molecules, water, water_data, whole_deck
+from support.scenes import frames, two_molecules, water, water_data, whole_deck
 
 # Forces on chosen atoms from step 5 on; before it exp(0) * 0.
 PUSH = """

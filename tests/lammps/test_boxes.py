@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import difference, last_frame, restarted, water, water_data
+from support.scenes import difference, last_frame, restarted, water, water_data
 
 STEPS = 400
 SPACING = 3.3

@@ -1,7 +1,7 @@
 """Atoms that commands move relative to their body."""
 
 import pytest
-from scenes import water
+from support.scenes import water
 
 GROUPS = "group one id 4\ngroup two molecule 2\n"
 REBUILT = "atoms were changed since the last run; bodies are rebuilt from them"

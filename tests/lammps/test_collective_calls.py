@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from running import ROOT, TREE_BUILD, tree_source
+from support.running import ROOT, TREE_BUILD, tree_source
 
 
 @pytest.fixture(scope="module")

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from scenes import SPCE, WATER_MASSES, frames, last_frame, last_numbers, placed, two_molecules
-from inserted import INSERT, MOL, N, TEMPLATE, close, evaporating, liquid, poses
+from support.scenes import SPCE, WATER_MASSES, frames, last_frame, last_numbers, placed, two_molecules
+from support.insertion import INSERT, MOL, N, TEMPLATE, close, evaporating, liquid, poses
 
 BOLTZMANN = 0.0019872067  # kcal/mol/K
 OXYGEN = 5 * 3 - 2  # of molecule 5

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from extended_scenes import Atom, assert_inertia, body_deck, center, deck, equivalent_points, words
-from scenes import last_frame, last_numbers
+from support.extended_atoms import Atom, assert_inertia, body_deck, center, deck, equivalent_points, words
+from support.scenes import last_frame, last_numbers
 from scipy.spatial.transform import Rotation
 
 OMEGA = np.array([0.7, -0.4, 1.1])

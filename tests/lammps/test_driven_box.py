@@ -5,7 +5,7 @@ Unsupported settings are in test_bad_input.py.
 
 import numpy as np
 import pytest
-from pressed import REPULSIVE, distances, ends, pressed, trimers
+from support.constant_pressure import REPULSIVE, distances, ends, pressed, trimers
 
 TILTED = np.eye(3)
 SOLVENT = """create_atoms 2 random 40 4711 NULL overlap 0.7 maxtry 500

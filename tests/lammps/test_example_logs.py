@@ -6,8 +6,8 @@ import re
 
 import pytest
 
-from example_logs import RANKS, copy_examples, date_of, decks, log_of, name_of, needs_wheel, run_tests
-from running import EXAMPLES, ROOT
+from support.example_logs import RANKS, copy_examples, date_of, decks, log_of, name_of, needs_wheel, run_tests
+from support.running import EXAMPLES, ROOT
 
 
 @pytest.mark.parametrize("ranks", RANKS)

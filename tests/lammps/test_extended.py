@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from extended_scenes import (
+from support.extended_atoms import (
     Atom,
     assert_inertia,
     body_deck,
@@ -18,7 +18,7 @@ from extended_scenes import (
     triangle,
     words,
 )
-from scenes import last_frame, last_numbers
+from support.scenes import last_frame, last_numbers
 from scipy.spatial.transform import Rotation
 
 OMEGA = np.array([0.7, -0.4, 1.1])

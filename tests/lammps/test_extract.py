@@ -4,9 +4,9 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from scenes import SPCE, WATER_MASSES, water, water_data
+from support.scenes import SPCE, WATER_MASSES, water, water_data
 
-from running import ROOT, tree_source
+from support.running import ROOT, tree_source
 
 N = 27
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from running import run_python
+from support.running import run_python
 
 FALLBACK = "start with known forces only (order 2), because"
 FULL = "start of order 8 from"

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from running import ROOT, Lammps, tree_source
+from support.running import ROOT, Lammps, tree_source
 
 # two triangles, which are bodies, and four other atoms; {pair} acts between all
 DECK = """

@@ -3,8 +3,8 @@
 import re
 
 import pytest
-from running import ROOT
-from scenes import one_after_the_other, two_molecules
+from support.running import ROOT
+from support.scenes import one_after_the_other, two_molecules
 
 PAGE = ROOT / "doc/howto/from_rigid.md"
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from running import EXAMPLES
-from scenes import FORMULATIONS, frames, last_frame, one_after_the_other, placed, water, write_data
-from stepped import off, tables
+from support.running import EXAMPLES
+from support.scenes import FORMULATIONS, frames, last_frame, one_after_the_other, placed, water, write_data
+from support.step_control import off, tables
 
 from benchmarks.engine.sites import read_sites
 from benchmarks.reference import FreeField, Problem, bodies_from_sites

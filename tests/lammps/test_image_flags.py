@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import two_molecules
+from support.scenes import two_molecules
 
 # both molecules move by 9.5 boxes in a hundred steps; the flags wrap around after 5384 steps in x
 FLIGHT = """

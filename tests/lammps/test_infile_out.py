@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from scenes import WATER_MASSES, expect, frames, last_frame, two_molecules, water, water_data
-from life_cycle import Case1, bodies_in, end
+from support.scenes import WATER_MASSES, expect, frames, last_frame, two_molecules, water, water_data
+from support.paper_case import Case1, bodies_in, end
 
 BODIES = 27
 MASS, CENTER, INERTIA, VELOCITY = slice(1, 2), slice(2, 5), slice(5, 11), slice(11, 14)

@@ -5,8 +5,8 @@ The independence of the trajectory from the ranks is tested in test_large_bodies
 
 import numpy as np
 import pytest
-from heated import END, continued, run
-from scenes import BEFORE, MOLECULES, largest_change, last_frame, placed, two_molecules
+from support.constant_temperature import END, continued, run
+from support.scenes import BEFORE, MOLECULES, largest_change, last_frame, placed, two_molecules
 
 MODES = ["total", "separate"]
 PARTS = ["f_move[1]", "f_move[2]"]  # of translation and rotation

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from life_cycle import Case1, bodies_in, end
-from scenes import restarted
+from support.paper_case import Case1, bodies_in, end
+from support.scenes import restarted
 
 from lammps_gearquat.launch import processes_of_session
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from pressed import pressed
-from scenes import TRIMER
+from support.constant_pressure import pressed
+from support.scenes import TRIMER
 
 DECK = """
 units lj

@@ -9,8 +9,8 @@ import re
 
 import numpy as np
 import pytest
-from running import make_lmp_tree
-from scenes import (
+from support.running import make_lmp_tree
+from support.scenes import (
     frames,
     last_frame,
     one_after_the_other,

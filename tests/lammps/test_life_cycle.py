@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from scenes import two_molecules
-from life_cycle import Case1, end
+from support.scenes import two_molecules
+from support.paper_case import Case1, end
 
 
 @pytest.fixture

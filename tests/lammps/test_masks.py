@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import frames, last_frame, one_after_the_other, placed, restarted, water, water_data
+from support.scenes import frames, last_frame, one_after_the_other, placed, restarted, water, water_data
 from scipy.special import ellipj, ellipk
 
 PRESSURE = 68568.415  # kcal/mol/Angstrom^3 in atm, LAMMPS' value in real units

@@ -6,7 +6,7 @@ outputs of the fix.
 
 import numpy as np
 import pytest
-from scenes import last_frame
+from support.scenes import last_frame
 
 STIFF, DAMPING = 20000, 50
 OLD = f"{STIFF} NULL {DAMPING} NULL 0.5 1"

@@ -4,9 +4,9 @@ import re
 
 import numpy as np
 import pytest
-from pressed import ARMS, FLAT_ARMS, GAUSS, MASSES, REPULSIVE, trimers
-from scenes import one_after_the_other
-from pressed import dipoles_deck
+from support.constant_pressure import ARMS, FLAT_ARMS, GAUSS, MASSES, REPULSIVE, trimers
+from support.scenes import one_after_the_other
+from support.constant_pressure import dipoles_deck
 
 DECK = """
 units lj

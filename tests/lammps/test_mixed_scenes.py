@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from running import Lammps
-from scenes import FORMULATIONS, WATER_MASSES, last_frame, one_after_the_other, water, water_data
+from support.running import Lammps
+from support.scenes import FORMULATIONS, WATER_MASSES, last_frame, one_after_the_other, water, water_data
 
 RIGID, OURS = "rigid/nve/small molecule", "gear/quat molecule formulation "
 METHODS = {"rigid": RIGID, **{formulation: OURS + formulation for formulation in FORMULATIONS}}

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from scenes import one_after_the_other, placed
+from support.scenes import one_after_the_other, placed
 
 O, C, LENGTH = 15.9994, 12.011, 1.16
 

@@ -5,8 +5,8 @@ import re
 
 import numpy as np
 import pytest
-from running import ROOT
-from scenes import last_frame, one_after_the_other, placed, two_molecules, water, water_data
+from support.running import ROOT
+from support.scenes import last_frame, one_after_the_other, placed, two_molecules, water, water_data
 
 SOURCE = ROOT / "src/GEARQUAT/gear_quat_styles.cpp"
 MANUAL = ROOT / "doc/src/fix_gear_quat.rst"

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from running import run_python
-from scenes import WATER_MASSES, expect, last_frame, restarted, water, water_data
+from support.running import run_python
+from support.scenes import WATER_MASSES, expect, last_frame, restarted, water, water_data
 from scipy.spatial.transform import Rotation
 
 BODIES = 27

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from scenes import water, water_data
+from support.scenes import water, water_data
 
 GROUPS = "group oxygens type 1\ngroup hydrogens type 2\n"
 TEMPERATURES = """

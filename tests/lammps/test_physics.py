@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import UNITS, frames, last_frame, placed, two_molecules, water, water_data
+from support.scenes import UNITS, frames, last_frame, placed, two_molecules, water, water_data
 
 BOLTZMANN = 0.0019872067  # kcal/mol/K, LAMMPS' value in real units
 

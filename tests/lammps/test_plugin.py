@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from running import MPI_ENVIRONMENT, ROOT, Lammps, make_lmp_of_wheel, make_lmp_wheel, tree_source, tree_version
-from thrown import DECK, assert_thrown
+from support.running import MPI_ENVIRONMENT, ROOT, Lammps, make_lmp_of_wheel, make_lmp_wheel, tree_source, tree_version
+from support.thrown_body import DECK, assert_thrown
 
 WHEEL_VERSION = "22 Jul 2025"
 

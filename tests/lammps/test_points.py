@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import TRIMER
+from support.scenes import TRIMER
 
 DECK = """
 units lj

@@ -5,8 +5,8 @@ Unsupported settings are in test_bad_input.py, restarts and ranks in test_pressu
 
 import numpy as np
 import pytest
-from pressed import GAUSS, distances, ends, frame, pressed, scaled_water, trimers
-from scenes import largest_change, water_data
+from support.constant_pressure import GAUSS, distances, ends, frame, pressed, scaled_water, trimers
+from support.scenes import largest_change, water_data
 
 EDGES = ("Lx", "Ly", "Lz")
 #: elements of the fix's vector: molecular pressures xx yy zz, target, rates of the box, its kinetic energy

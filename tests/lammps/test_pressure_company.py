@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from pressed import REPULSIVE, dipoles_deck, ends, frame, pressed, trimers
-from scenes import FORMULATIONS, largest_change
+from support.constant_pressure import REPULSIVE, dipoles_deck, ends, frame, pressed, trimers
+from support.scenes import FORMULATIONS, largest_change
 
 #: for 8 trimers between z = 0 and 4; these forces have energies, and act only along z
 SLIT = """

@@ -4,8 +4,8 @@ import re
 
 import numpy as np
 import pytest
-from pressed import pressed, trimers
-from scenes import largest_change
+from support.constant_pressure import pressed, trimers
+from support.scenes import largest_change
 
 # --- the frequency of the box --------------------------------------------------------------------
 

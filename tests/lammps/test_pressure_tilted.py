@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from pressed import REPULSIVE, ends, pressed, trimers
-from scenes import largest_change
+from support.constant_pressure import REPULSIVE, ends, pressed, trimers
+from support.scenes import largest_change
 
 TILTS = ("Xy", "Xz", "Yz")
 SHAPE = np.array([[1.0, 0.2, -0.1], [0.0, 1.05, 0.15], [0.0, 0.0, 0.97]])

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from pressed import ends, pressed, trimers
-from scenes import largest_change
+from support.constant_pressure import ends, pressed, trimers
+from support.scenes import largest_change
 
 TIME, EPS = 2.0, (1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 MODES = {

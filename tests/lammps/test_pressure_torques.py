@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from pressed import MOMENT, TARGET, dipoles_deck, ends
-from scenes import largest_change
+from support.constant_pressure import MOMENT, TARGET, dipoles_deck, ends
+from support.scenes import largest_change
 
 
 def test_virial_is_the_change_of_energy_with_the_box(lmp_tree):

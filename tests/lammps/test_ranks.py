@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from scenes import (
+from support.scenes import (
     FORMULATIONS,
     difference,
     flat_water_data,

@@ -4,9 +4,9 @@ import json
 
 import numpy as np
 import pytest
-from scenes import water, water_data
+from support.scenes import water, water_data
 
-from running import TREE_BUILD, run_python
+from support.running import TREE_BUILD, run_python
 
 # words -> {"error": text, "before": state, "after": state, "then": state}; see test_nothing_has_changed
 PROGRAM = """

@@ -5,7 +5,7 @@ from fnmatch import fnmatchcase
 
 import numpy as np
 import pytest
-from scenes import (
+from support.scenes import (
     empty_box,
     frames,
     last_frame,

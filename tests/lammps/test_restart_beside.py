@@ -5,7 +5,7 @@ blocks before its own by the number at the beginning of each.
 """
 
 import pytest
-from scenes import restarted, water
+from support.scenes import restarted, water
 
 # Fixes that each store numbers of atoms: springs, initial positions, marks and velocities.
 KEEPERS = """

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import last_frame, restarted, water, water_data
+from support.scenes import last_frame, restarted, water, water_data
 
 STEPS = 40
 WARNING = "the bodies of this command do not consist of the same atoms as in the restart file"

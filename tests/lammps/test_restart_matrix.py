@@ -8,8 +8,8 @@ ranks or on others.  Steps are long, so that the histories matter.  All keywords
 from itertools import product
 
 import pytest
-from running import EXAMPLES
-from scenes import assigned, difference, last_frame, one_after_the_other, restarted, water, water_data, whole_deck
+from support.running import EXAMPLES
+from support.scenes import assigned, difference, last_frame, one_after_the_other, restarted, water, water_data, whole_deck
 
 SCENES = {"case1": 0.5, "water": 1.0}  # with their time steps
 WORDS = {

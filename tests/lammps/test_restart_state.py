@@ -9,9 +9,9 @@ import re
 import struct
 
 import pytest
-from pressed import REPULSIVE, apart, ends as pressed_ends, pressed, trimers
-from running import ROOT
-from scenes import FORMULATIONS, one_after_the_other
+from support.constant_pressure import REPULSIVE, apart, ends as pressed_ends, pressed, trimers
+from support.running import ROOT
+from support.scenes import FORMULATIONS, one_after_the_other
 
 PACKAGE = ROOT / "src" / "GEARQUAT"
 MAGIC = struct.pack("d", float(int.from_bytes(b"gearquat", "big")))

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from scenes import one_after_the_other
-from heated import END, TEMP, cluster, continued
+from support.scenes import one_after_the_other
+from support.constant_temperature import END, TEMP, cluster, continued
 
 RAMP = "temp 0.4 0.8 0.3"
 SPAN = "start 0 stop 100"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from running import processes_that_mention
+from support.running import processes_that_mention
 
 DECK = """
 units lj

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from scenes import FORMULATIONS, last_frame, placed, two_molecules, water
+from support.scenes import FORMULATIONS, last_frame, placed, two_molecules, water
 
 FALLBACK = "start with known forces only (order 2), because"
 

@@ -9,7 +9,7 @@ import re
 import numpy as np
 import pytest
 
-from running import EXAMPLES
+from support.running import EXAMPLES
 
 LIQUID = """
 units {units}

@@ -7,8 +7,8 @@ import re
 
 import numpy as np
 import pytest
-from scenes import MOLECULES, largest_change, last_frame
-from heated import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued, run
+from support.scenes import MOLECULES, largest_change, last_frame
+from support.constant_temperature import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued, run
 
 
 def order(steps, errors):

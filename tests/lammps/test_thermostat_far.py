@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from scenes import one_after_the_other, water, water_data
+from support.scenes import one_after_the_other, water, water_data
 
 # Dumbbells on a lattice with few collisions: soft spheres, so that forces are smooth
 GAS = """

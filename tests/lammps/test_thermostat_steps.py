@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import (
+from support.scenes import (
     MOLECULES,
     difference,
     largest_change,
@@ -13,9 +13,9 @@ from scenes import (
     water_data,
 )
 from scipy.integrate import solve_ivp
-from inserted import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
-from heated import COMMON, END, KINDS, cluster, continued
-from stepped import ELEMENTS, LARGEST, LOADS, NEXT, REPEATED, agree_on_ranks, tables
+from support.insertion import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
+from support.constant_temperature import COMMON, END, KINDS, cluster, continued
+from support.step_control import ELEMENTS, LARGEST, LOADS, NEXT, REPEATED, agree_on_ranks, tables
 
 TEMP = "temp 0.5 0.5 0.3"
 TAKEN, XI = "f_move[18]", "f_move[22]"  # with tolerance

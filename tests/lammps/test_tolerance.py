@@ -7,9 +7,9 @@ import re
 
 import numpy as np
 import pytest
-from running import EXAMPLES
-from scenes import UNITS, assigned, one_after_the_other, restarted, two_molecules, water, water_data, whole_deck
-from stepped import (
+from support.running import EXAMPLES
+from support.scenes import UNITS, assigned, one_after_the_other, restarted, two_molecules, water, water_data, whole_deck
+from support.step_control import (
     ELEMENTS,
     HELD,
     INSERTED,

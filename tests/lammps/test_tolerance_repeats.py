@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from scenes import one_after_the_other, placed, water, water_data
-from stepped import (
+from support.scenes import one_after_the_other, placed, water, water_data
+from support.step_control import (
     HELD,
     INSERTED,
     LARGEST,

@@ -7,10 +7,10 @@ import re
 
 import numpy as np
 import pytest
-from running import EXAMPLES
-from scenes import largest_change, last_frame, one_after_the_other
-from heated import COLUMNS, COMMON, END, KINDS, TEMP, cluster
-from stepped import tables
+from support.running import EXAMPLES
+from support.scenes import largest_change, last_frame, one_after_the_other
+from support.constant_temperature import COLUMNS, COMMON, END, KINDS, TEMP, cluster
+from support.step_control import tables
 
 DUMBBELL = """d
 

@@ -4,7 +4,7 @@ from itertools import permutations
 
 import numpy as np
 import pytest
-from scenes import one_after_the_other
+from support.scenes import one_after_the_other
 
 TRIANGLE = "triangle\n\n3 atoms\n\nCoords\n\n1 0 0 0\n2 0.8 0.58 0\n3 -0.8 0.58 0\n\nTypes\n\n1 1\n2 1\n3 1\n"
 ROD = "rod\n\n5 atoms\n\nCoords\n\n{}\n\nTypes\n\n{}\n".format(

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from example_logs import copy_examples
-from running import ROOT, tree_source
+from support.example_logs import copy_examples
+from support.running import ROOT, tree_source
 
 PACKAGE = ROOT / "src" / "GEARQUAT"
 SOURCES = sorted([*PACKAGE.glob("*.h"), *PACKAGE.glob("*.cpp")])

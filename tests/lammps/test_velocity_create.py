@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import one_after_the_other
+from support.scenes import one_after_the_other
 
 ANGLES = np.arange(12) * np.pi / 6
 PLATE = [

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import water, water_data
+from support.scenes import water, water_data
 
 OUTPUTS = 172
 PARTS = range(1, 7)

@@ -2,7 +2,7 @@
 
 import functools
 
-import clumps
+from support import clumps
 import numpy as np
 import pytest
 

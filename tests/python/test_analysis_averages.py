@@ -4,7 +4,7 @@ import csv
 import re
 from types import SimpleNamespace
 
-import dumps
+from support import dumps
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation

@@ -4,12 +4,12 @@ import csv
 import re
 import shlex
 
-import dumps
+from support import dumps
 import MDAnalysis
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from dumps import analyze, columns
+from support.dumps import analyze, columns
 from scipy.spatial.transform import Rotation
 
 from gearquat_analysis import Poses, TablePoses, open_dump, open_table
@@ -18,8 +18,8 @@ from gearquat_analysis.units import UNITS
 from benchmarks.reference import paper_problem, reference_state
 from benchmarks.reference import quaternion as qt
 from lammps_gearquat.launch import open_library
-from pages import blocks
-from running import EXAMPLES, ROOT, make_lmp_wheel
+from support.pages import blocks
+from support.running import EXAMPLES, ROOT, make_lmp_wheel
 
 BODIES = paper_problem(1, dtype=np.float64).bodies
 SITES = BODIES.sites_body

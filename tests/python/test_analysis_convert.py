@@ -1,6 +1,6 @@
 """Converted trajectories, read back: times, positions and velocities for each of LAMMPS' unit styles."""
 
-import dumps
+from support import dumps
 import MDAnalysis
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ import pytest
 from gearquat_analysis import DumpError, Poses, open_any, open_dump
 from gearquat_analysis.convert import convert
 from gearquat_analysis.units import UNITS
-from running import make_lmp_wheel
+from support.running import make_lmp_wheel
 
 pytestmark = pytest.mark.filterwarnings("ignore:::MDAnalysis")
 

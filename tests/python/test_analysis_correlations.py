@@ -1,6 +1,6 @@
 """Mean squares, correlations and stays of known motions, compared with direct sums."""
 
-import dumps
+from support import dumps
 import numpy as np
 import pytest
 from MDAnalysis.lib.correlations import autocorrelation

@@ -2,7 +2,7 @@
 
 import re
 
-import dumps
+from support import dumps
 import numpy as np
 import pytest
 

@@ -2,7 +2,7 @@
 
 import sys
 
-import dumps
+from support import dumps
 import numpy as np
 import pytest
 

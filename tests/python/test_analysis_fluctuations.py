@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-import dumps
+from support import dumps
 import numpy as np
 import pytest
 from scipy.constants import Boltzmann

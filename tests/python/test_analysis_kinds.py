@@ -1,6 +1,6 @@
 """Mixtures: kinds of bodies are distinguished, and each kind has separate averages and functions."""
 
-import dumps
+from support import dumps
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation

@@ -2,7 +2,7 @@
 
 import warnings
 
-import dumps
+from support import dumps
 import MDAnalysis
 import numpy as np
 import pytest

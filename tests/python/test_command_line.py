@@ -11,9 +11,9 @@ import yaml
 from click.testing import CliRunner
 
 from lammps_gearquat.cli import main
-from dumps import Motion, write
-from pages import paste, unpack
-from running import ROOT
+from support.dumps import Motion, write
+from support.pages import paste, unpack
+from support.running import ROOT
 
 COMMANDS = ("cost", "analyze", "scatter")
 

@@ -11,8 +11,8 @@ import pytest
 
 from benchmarks.reference import stability
 from lammps_gearquat import keywords
-from pages import first_script
-from running import ROOT, tree_source
+from support.pages import first_script
+from support.running import ROOT, tree_source
 
 SOURCES = ROOT / "src" / "GEARQUAT"
 ARGUMENTS = (SOURCES / "gear_quat_arguments.cpp").read_text()

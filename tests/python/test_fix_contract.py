@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from running import ROOT, source_trees
+from support.running import ROOT, source_trees
 
 PAGE = (ROOT / "doc" / "fix_contract.md").read_text()
 TYPES = r"(?:static )?(?:int|unsigned int|uint64_t|bigint|double|char|ExecutionSpace)"

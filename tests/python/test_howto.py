@@ -9,8 +9,8 @@ import pytest
 from click.testing import CliRunner
 
 from gearquat_analysis.command import analyze
-from pages import blocks, edited, first_script, paste
-from running import ROOT
+from support.pages import blocks, edited, first_script, paste
+from support.running import ROOT
 
 
 def passes(lmp, script, **options):

@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 import yaml
-from running import ROOT
+from support.running import ROOT
 
 FOLDER = ROOT / "cmake" / "packaging" / "conda"
 

@@ -4,7 +4,7 @@ import re
 import runpy
 
 import pytest
-from running import ROOT
+from support.running import ROOT
 
 PAPER = (ROOT / "paper" / "paper.md").read_text()
 #: the sections that the Journal of Open Source Software requires

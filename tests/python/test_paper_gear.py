@@ -6,7 +6,7 @@ labeling of the paper, so the fix has to agree with one of the 24 labelings, to 
 
 import numpy as np
 import pytest
-from paper_gear import FRAMES, PaperGear, eq_8
+from support.paper_gear import FRAMES, PaperGear, eq_8
 
 DT, STEPS = 0.125, 40
 

@@ -3,7 +3,7 @@
 import json
 import shutil
 
-import colliding
+from support import colliding
 import pytest
 from click.testing import CliRunner
 

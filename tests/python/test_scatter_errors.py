@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from atoms import ARGON, BOLTZMANN, IONS, Atoms, until
+from support.atoms import ARGON, BOLTZMANN, IONS, Atoms, until
 from lammps_gearquat.scatter import Plan, pilots
 from lammps_gearquat.scatter.density import Density
 from lammps_gearquat.scatter.integrals import weights

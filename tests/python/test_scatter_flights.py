@@ -8,7 +8,7 @@ import sys
 import time
 from pathlib import Path
 
-import colliding
+from support import colliding
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -20,7 +20,7 @@ from lammps_gearquat.scatter import Plan, flights, open_pair, store
 from lammps_gearquat.scatter.sampling import rotational, starts_of
 from gearquat_analysis import Poses, open_dump
 from gearquat_analysis.units import UNITS
-from running import EXAMPLES
+from support.running import EXAMPLES
 
 WHOLE = ("--temperature", "1", "--largest", "3", "--seed", "4")
 #: the command in another process, as with the fixture few_pilots

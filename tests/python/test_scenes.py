@@ -4,10 +4,10 @@ import runpy
 
 import numpy as np
 import pytest
-from pages import unpack
-from scene_files import read_atoms
+from support.pages import unpack
+from support.scene_files import read_atoms
 
-from running import EXAMPLES
+from support.running import EXAMPLES
 
 MOTIONS = ("momentum", "second", "first", "rigid")
 METHODS = ("gear", "rigid", "rigid_big", "rigid_verlet")

@@ -8,10 +8,10 @@ import signal
 import types
 
 import numpy as np
-import pppm_water
+from support import pppm_water
 import pytest
 from click.testing import CliRunner
-from clumps import FIX, FOR_GEAR
+from support.clumps import FIX, FOR_GEAR
 
 from lammps_gearquat.commands.cost import cost as cost_command
 from gearquat_analysis.bodies import Bodies
@@ -19,7 +19,7 @@ from lammps_gearquat.launch import LammpsError
 from lammps_gearquat.trials import cost, doubt, evaluate, measure, report, until
 from lammps_gearquat.trials.measure import Deck
 from lammps_gearquat.trials.script import DeckError
-from running import processes_that_mention
+from support.running import processes_that_mention
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import types
 
 import numpy as np
 import pytest
-from clumps import FIX, FOR_GEAR
+from support.clumps import FIX, FOR_GEAR
 from matplotlib.figure import Figure
 
 from lammps_gearquat import figures

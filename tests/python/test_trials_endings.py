@@ -12,13 +12,13 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from clumps import FOR_GEAR
+from support.clumps import FOR_GEAR
 
 from lammps_gearquat.commands import common
 from lammps_gearquat.commands.cost import cost as cost_command
 from lammps_gearquat.trials.explain import explained
 from lammps_gearquat.trials.measure import Deck
-from running import processes_that_mention
+from support.running import processes_that_mention
 
 SMALL = {"region box block -30 30 -30 30 -30 30": "region box block -2 5 -2 5 -2 5"}
 WALLS, FREE = "boundary f f f", "boundary m m m"

@@ -5,14 +5,14 @@ import re
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from clumps import FIX, SITES
+from support.clumps import FIX, SITES
 
 from lammps_gearquat.commands.cost import cost
 from lammps_gearquat.trials import script
 from lammps_gearquat.trials.cost import Budget, measure
 from lammps_gearquat.trials.measure import Deck
 from lammps_gearquat.trials.script import DeckError
-from running import source_trees
+from support.running import source_trees
 
 RUNS = "run 0\nrun 500\nrun 1000000"
 AGAIN = FIX.replace("${style}", "rigid/nve")

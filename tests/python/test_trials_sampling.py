@@ -6,7 +6,7 @@ import types
 
 import numpy as np
 import pytest
-from clumps import FOR_GEAR
+from support.clumps import FOR_GEAR
 
 from gearquat_analysis.bodies import Bodies
 from gearquat_analysis.blocks import Estimate

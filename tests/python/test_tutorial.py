@@ -13,7 +13,7 @@ import pytest
 from nbclient import NotebookClient
 
 from gearquat_analysis import averages
-from running import MPI_ENVIRONMENT, ROOT
+from support.running import MPI_ENVIRONMENT, ROOT
 
 API = (ROOT / "doc" / "api.md").read_text()
 MODULES = re.findall(r"^\.\. currentmodule:: (\S+)$", API, re.M)

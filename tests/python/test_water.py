@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from scene_files import read_atoms
+from support.scene_files import read_atoms
 from scipy.spatial import cKDTree
 
-from running import EXAMPLES
+from support.running import EXAMPLES
 
 DECK = EXAMPLES / "water" / "in.water"
 DATA = EXAMPLES / "water" / "data.water"

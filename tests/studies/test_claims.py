@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from synthetic import made_up_results
+from support.synthetic import made_up_results
 
 from benchmarks.studies.cases import claims, plan
 from benchmarks.studies.cases.claims import EXPLAINED, NOT, REPRODUCED

@@ -2,7 +2,7 @@
 
 import re
 
-from scenes import BEFORE, MOLECULES, one_after_the_other, placed
+from support.scenes import BEFORE, MOLECULES, one_after_the_other, placed
 
 KINDS = ["total", "separate"]
 TEMP = "temp 0.5 0.5 0.3"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from scenes import one_after_the_other, random_rotation, water_data
+from support.scenes import one_after_the_other, random_rotation, water_data
 
 ARMS = np.array([[0.0, 0.25, 0.0], [0.3, -0.15, 0.05], [-0.2, -0.1, -0.1]])
 MASSES = np.array([1.0, 0.7, 1.3])

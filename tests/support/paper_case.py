@@ -1,7 +1,7 @@
 """The first case of the paper with other final commands."""
 
 import numpy as np
-from scenes import restarted, whole_deck
+from support.scenes import restarted, whole_deck
 
 COLUMNS = ["c_centre[1]", "c_centre[2]", "c_centre[3]", "c_potential", "v_ketrans", "v_kerot"]
 

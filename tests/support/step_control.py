@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import frames, placed
+from support.scenes import frames, placed
 
 ELEMENTS = [f"f_move[{k}]" for k in range(9, 18)]
 NEXT, SMALLEST, MEAN, LOADS, MEAN_LOADS, LARGEST, HELD, REPEATED, LAST = ELEMENTS

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
-from scenes import empty_box
+from support.scenes import empty_box
 from scipy.spatial.transform import Rotation
 
 # columns of a dump for each atom style, and settings that make its points pointlike

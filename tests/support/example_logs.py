@@ -16,7 +16,7 @@ from pathlib import Path
 
 import yaml
 
-from running import EXAMPLES, ROOT, Lammps, make_lmp_wheel, tree_source, waiting_environment
+from support.running import EXAMPLES, ROOT, Lammps, make_lmp_wheel, tree_source, waiting_environment
 
 CONFIGURATION = ROOT / "tests" / "lammps" / "run_tests.yaml"
 

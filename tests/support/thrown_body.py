@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from running import Result
+from support.running import Result
 
 #: One tetrahedron that is thrown, with nothing around it; {load} is a line before the fix.
 DECK = """

