@@ -1,13 +1,12 @@
-"""Passes inputs to LAMMPS in this process and prints the outcomes as JSON; see campaign.py.
+"""Passes inputs to LAMMPS in the process of a Worker; see campaign.py.
 
 A crash or a hang ends the process: the input is then in the file that the caller has named.
 """
 
-import json
+import os
 import random
 import resource
 import signal
-import sys
 from collections import Counter
 from pathlib import Path
 
@@ -79,8 +78,9 @@ class Scene:
         return True, wrong
 
 
-def work(kind, seed, count, last):
-    """Counts and faults of ``count`` inputs; ``last``: a file that holds the present input."""
+def work(kind, seed, count, last, tell):
+    """Counts, faults and memory of ``count`` inputs; ``last``: a file that holds the present input."""
+    os.chdir(last.parent)
     module = {"arguments": arguments, "infile": infile}[kind]
     rng, scene = random.Random(f"{kind} {seed}"), Scene(module)
     counts, faults = Counter(), []
@@ -96,10 +96,5 @@ def work(kind, seed, count, last):
         if wrong and len(faults) < MOST_FAULTS:
             faults.append((shown, wrong))
     signal.alarm(0)
-    megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return {"counts": counts, "faults": faults, "megabytes": megabytes}
-
-
-if __name__ == "__main__":
-    kind, seed, count, last = sys.argv[1:]
-    print(json.dumps(work(kind, int(seed), int(count), Path(last).resolve())))
+    scene.lmp.close()
+    return [counts, faults, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024]
