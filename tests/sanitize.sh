@@ -83,10 +83,10 @@ part_sanitize() {
     fi
   done
 
-  # not what the plugin's LAMMPS alone can do or refuse, nor what counts instructions, reads sources, compares logs or runs LAMMPS' own fixes
+  # not what the plugin's LAMMPS alone can do or refuse, nor what reads sources or compares logs
   GEARQUAT_TREE=tree-sanitize GEARQUAT_FUZZ_INPUTS="${GEARQUAT_FUZZ_INPUTS:-5000}" run_pytest sanitize tests/lammps \
-    --ignore tests/lammps/test_plugin.py --ignore tests/lammps/test_effects.py \
-    --ignore tests/lammps/test_upstream.py --ignore tests/lammps/test_example_logs.py \
+    --ignore tests/lammps/test_plugin.py \
+    --ignore tests/lammps/test_lammps_standards.py --ignore tests/lammps/test_example_logs.py \
     --deselect tests/lammps/test_forces_as_verlet.py::test_what_an_atom_style_clears_besides_forces \
     --deselect tests/lammps/test_forces_as_verlet.py::test_a_run_style_with_forces_elsewhere_is_not_followed \
     --deselect tests/lammps/test_extended.py::test_the_wheel_refuses_by_name \
@@ -97,7 +97,6 @@ part_sanitize() {
     --deselect tests/lammps/test_atom_styles.py::test_an_arm_of_a_body \
     --deselect tests/lammps/test_atom_styles.py::test_friction_of_smoothed_particles \
     --deselect tests/lammps/test_atom_styles.py::test_fluids_of_rheo_move_all_atoms \
-    --deselect tests/lammps/test_automatic_values.py::test_friction_of_a_strongly_damping_fluid \
     --deselect "tests/lammps/test_memory.py::test_a_run_in_pieces_is_the_same_run[bond bpm/spring]" \
     --deselect "tests/lammps/test_memory.py::test_a_run_in_pieces_is_the_same_run[bond bpm/rotational]" \
     --deselect tests/lammps/test_coming_and_going.py::test_a_plugin_without_the_header_says_so \
