@@ -125,7 +125,6 @@ def test_axes_of_equal_moments_are_arbitrary(moments, turn, expected):
     again, after = averages.temperatures(poses), correlations.all_correlations(poses).functions
     for name in found:  # moments differ by 5e-4
         assert again[name] == pytest.approx(found[name], rel=1e-3), name
-        assert again[name] != pytest.approx(1.01 * found[name], rel=1e-3), name
     for name in before:
         assert after[name] == pytest.approx(before[name], abs=1e-12 * np.abs(before[name]).max()), name
 
@@ -188,7 +187,6 @@ def test_energies_are_weighted_as_temperatures(tmp_path):
     printed = float(re.search("The mean of ke_translation is ([^ ]+)", result.output)[1])
     totals = dumps.columns(tmp_path / "out" / "totals.csv")["ke_translation"]
     assert printed == pytest.approx(0.5 * 6 * known["temperature of translation"], rel=1e-5)
-    assert printed != pytest.approx(0.5 * 6 * 1.01 * known["temperature of translation"], rel=1e-5)
     # the integral over time by the trapezoidal rule with longer ends, and not the plain mean
     assert printed == pytest.approx(np.average(totals, weights=np.gradient(times)), rel=1e-5)
     assert printed < 0.9 * totals.mean()

@@ -37,7 +37,6 @@ def test_displacement_of_a_straight_motion(held):
     found = correlations.mean_square_displacement(center)
     expected = (velocity**2).sum(axis=1).mean() * time**2
     assert found == pytest.approx(expected, rel=1e-8, abs=1e-10)
-    assert found != pytest.approx(1.01 * expected, rel=5e-3)
 
 
 def test_displacement_of_any_motion(held):
@@ -50,7 +49,6 @@ def test_autocorrelation_of_any_motion(held):
     v = RNG.normal(size=(FRAMES, BODIES, 3)).cumsum(axis=0)
     expected = directly(lambda a, b: (a * b).sum(axis=-1), v)
     assert correlations.autocorrelation(v) == pytest.approx(expected, rel=1e-11, abs=1e-11)
-    assert correlations.autocorrelation(1.01 * v) != pytest.approx(expected, rel=5e-3)
 
 
 def rotating(omega, angle=0.2):
@@ -68,7 +66,6 @@ def test_rotation_is_not_bounded(held):
     found, largest = correlations.mean_square_rotation(q)
     expected = (0.9 * np.arange(FRAMES)) ** 2
     assert found == pytest.approx(expected, rel=1e-10, abs=1e-10)
-    assert found != pytest.approx(1.01 * expected, rel=5e-3)
     assert largest == pytest.approx(0.9, rel=1e-12)
 
 
@@ -89,8 +86,6 @@ def test_directions_stand_for_all(moments, first, number):
                 u = np.roll([x, y, z], first)
                 expected += weight / 16 * correlations.orientation_correlation(q, u, order)
         assert found == pytest.approx(expected, abs=1e-12)
-        if number == 3:  # and a single direction does not agree
-            assert correlations.orientation_correlation(q, few[0], order) != pytest.approx(expected, abs=1e-2)
 
 
 def test_orientation_of_an_even_rotation(held):
@@ -103,7 +98,6 @@ def test_orientation_of_an_even_rotation(held):
     first, second = (correlations.orientation_correlation(q, axis, order) for order in (1, 2))
     assert first == pytest.approx(cosine.mean(axis=1), abs=1e-13)
     assert second == pytest.approx((1.5 * cosine**2 - 0.5).mean(axis=1), abs=1e-13)
-    assert second != pytest.approx((1.5 * cosine**2 - 0.5).mean(axis=1) * 1.01, abs=1e-3)
 
 
 def test_rotation_of_linear_bodies_is_that_of_their_axes(tmp_path):
@@ -163,7 +157,6 @@ def test_stays_at_uneven_times():
     found = residence.stays(visiting([0, 0, 0, 0, 1, 1, -1]), PLACES, 1.0, time)
     expected = np.array([0.1 + 0.1 + 0.1 + 0.55, 1.0 + 1.0]) / (0.1 + 0.1 + 0.1 + 0.55 + 1.0 + 1.0 + 1.0)
     assert found.fraction() == pytest.approx(expected, rel=1e-12)
-    assert found.fraction() != pytest.approx(1.01 * expected, rel=5e-3)
     with pytest.raises(ValueError, match="frames that are evenly spaced in time"):
         found.survival()
 
@@ -188,7 +181,6 @@ def test_survival_of_many_is_that_of_mdanalysis():
     sets = [{(b, place) for b, place in enumerate(row)} for row in where]
     _, expected, _ = autocorrelation(sets, 20)
     assert found[:21] == pytest.approx(expected, rel=1e-12)
-    assert found[1:21] != pytest.approx(np.array(expected[1:]) * 1.01, rel=1e-3)
 
 
 @pytest.mark.parametrize(

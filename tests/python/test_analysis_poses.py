@@ -34,9 +34,6 @@ def test_poses_are_those_of_the_motion(poses):
         turn = MOTION.turns(time) * MOTION.turns(0.0).inv()
         error = Rotation.from_quat(found.q[k], scalar_first=True) * turn.inv()
         assert error.magnitude()[:3].max() < 1e-12
-        off = Rotation.from_rotvec(1.01 * turn.as_rotvec())
-        error = Rotation.from_quat(found.q[k], scalar_first=True) * off.inv()
-        assert k == 0 or error.magnitude()[:3].min() > 1e-5
     assert found.residual.max() < 1e-13
 
 
@@ -57,7 +54,6 @@ def test_velocities_are_those_of_the_motion(poses):
     omega[:, 4] = 0.0
     assert found.velocity == pytest.approx(np.array([MOTION.velocity] * 7), abs=1e-15)
     assert found.omega_space == pytest.approx(omega, abs=1e-15)
-    assert found.omega_space != pytest.approx(1.01 * omega, rel=5e-3)
     assert found.velocity_residual.max() < 1e-15
 
 
@@ -69,12 +65,10 @@ def test_energies_and_momenta_are_those_of_the_sites(poses):
         squares = 0.5 * np.bincount(MOTION.of, MOTION.masses * (v**2).sum(axis=1))
         kinetic = found.ke_translation[k] + found.ke_rotation[k]
         assert kinetic == pytest.approx(squares, rel=1e-12)
-        assert kinetic != pytest.approx(1.01 * squares, rel=5e-3)
         momentum = MOTION.masses[:, None] * v
         assert totals["momentum"][k] == pytest.approx(momentum.sum(axis=0), abs=1e-12)
         about = np.cross(x, momentum).sum(axis=0)
         assert totals["angular_momentum_space"][k] == pytest.approx(about, abs=1e-11)
-        assert totals["angular_momentum_space"][k] != pytest.approx(1.01 * about, rel=5e-3)
     assert totals["ke_rotation"] == pytest.approx(found.ke_rotation.sum(axis=1))
     assert (totals["residual"] == found.residual.max(axis=1)).all()
 
@@ -100,8 +94,6 @@ def test_reference_that_is_given(dump):
     for k, time in enumerate(TIMES):
         turn = Rotation.from_quat(found.q[k], scalar_first=True) * MOTION.turns(time).inv()
         assert turn.magnitude()[:3].max() < 1e-12
-    off = Poses(universe.atoms, reference=1.01 * MOTION.shape).run().results
-    assert off.residual[:, 0].min() > 1e-3
 
 
 def test_principal_reference_has_diagonal_inertia(dump):

@@ -32,7 +32,7 @@ def price_of(method, dt):
 def test_drift_is_the_slope_by_twice_the_kinetic_energy():
     """A run of 10 fs whose energy rises by 6e-6 per fs, or by 6 per ns, which is one kT for each degree of freedom."""
     found = drift.of_trial(trial_of(6e-6 * TIME - 40.0), drift.nanosecond(REAL))
-    assert found.rate == pytest.approx(1.0) and found.rate != pytest.approx(1.01)
+    assert found.rate == pytest.approx(1.0)
     assert found.error < 1e-6 and found.time == TIME[-1] and found.drifts
     assert drift.nanosecond(LJ) == 1000.0
 

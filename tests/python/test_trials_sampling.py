@@ -215,7 +215,7 @@ def test_steps_that_people_write(dt, longer, shorter):
 
 # --- what is measured -----------------------------------------------------------------------------------
 def test_difference_of_temperatures_and_its_error():
-    """Over many seeds a difference of 3 K is found within its error, and a change of 1 % is detected."""
+    """Over many seeds a difference of 3 K is found within its error."""
     z = []
     for seed in range(200):
         deck = MadeUpLiquid(steep, seed, apart=lambda dt: 3.0)
@@ -231,7 +231,7 @@ def test_difference_of_temperatures_and_its_error():
         FREEDOMS,
         BOLTZMANN,
     )
-    assert exact.difference.value == pytest.approx(3.0) != pytest.approx(3.03)
+    assert exact.difference.value == pytest.approx(3.0)
     assert exact.temperature == pytest.approx(300.0)
     assert Drift(0.0, 0.01, difference=Estimate(4.0, 0.4), temperature=300.0).unbalanced
     assert Drift(0.0, 0.01, difference=Estimate(4.0, 0.4), temperature=500.0).holds
@@ -258,8 +258,7 @@ UNITS_OF_FRICTION = {"lj": (1.0, 1000.0), "metal": (1.0 / UNITS["metal"].energy,
 
 @pytest.mark.parametrize("units", UNITS_OF_FRICTION)
 def test_a_friction_is_the_drift_that_it_is_in_all_units(make_deck, units):
-    """A friction -gamma v takes gamma/m of the energy per unit of time, in kT and degree of freedom; 1 % is
-    detected."""
+    """A friction -gamma v takes gamma/m of the energy per unit of time, in kT and degree of freedom."""
     force, ns = UNITS_OF_FRICTION[units]
     gamma, changes = 0.01 / force, {**FOR_GEAR, "units lj": f"units {units}"}
     if units == "metal":  # forces of eV would be strong in these units
@@ -267,7 +266,6 @@ def test_a_friction_is_the_drift_that_it_is_in_all_units(make_deck, units):
     with Deck(make_deck(f"fix drag all viscous {gamma}", **changes), [("style", "gear/quat")]) as deck:
         found = drift.of_trial(deck.run(None, [2] * 50, 1e-3, energies=True), drift.nanosecond(deck))
     assert found.rate == pytest.approx(-0.01 * ns, rel=2e-3)
-    assert found.rate != pytest.approx(-0.0101 * ns, rel=2e-3)
 
 
 PERIODIC = {"boundary f f f": "boundary p p f"}
