@@ -10,7 +10,7 @@ extern "C" {
 
 void tuned(int values, double *c)
 {
-  const auto found = tuned_set(values)->coefficients();
+  const auto found = tuned_coefficients(values);
   std::copy(found.begin(), found.end(), c);
 }
 }

@@ -16,8 +16,6 @@
 #include "gear_quat_history.h"
 
 #include <array>
-#include <cmath>
-#include <limits>
 #include <vector>
 
 namespace LAMMPS_NS::GearQuat {
@@ -35,23 +33,8 @@ std::vector<long double> first_order_coefficients(int values);
 /// N, and of order N + 1 for even N if the motion is slow.
 std::vector<long double> second_order_coefficients(int values, bool velocity_c0);
 
-/// The free coefficients for a number of values.
-struct TunedSet {
-  static constexpr long double SOLVED = std::numeric_limits<long double>::quiet_NaN();
-
-  std::vector<long double> tail;    ///< c_3 ... c_(N-1)
-  long double c0 = SOLVED;          ///< if it is not determined by the order
-
-  bool solves_c0() const { return std::isnan(c0); }
-  int values() const { return (int) tail.size() + 3; }
-  /// All N.
-  std::vector<long double> coefficients() const;
-};
-
-/// A set for each number of values from SECOND_FEWEST to SECOND_MOST.
-const std::vector<TunedSet> &tuned_sets();
-/// The tuned set, null if there is none for this number of values.
-const TunedSet *tuned_set(int values);
+/// All N tuned coefficients, from SECOND_FEWEST to SECOND_MOST values; empty for other numbers.
+std::vector<long double> tuned_coefficients(int values);
 
 /// Coefficients of all columns, and the weight of residuals in the local error.
 struct CorrectorCoefficients {
