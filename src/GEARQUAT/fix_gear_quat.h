@@ -21,11 +21,10 @@ FixStyle(gear/quat,FixGearQuat);
 #include "fix.h"
 
 #include "gear_quat_arguments.h"
-#include "gear_quat_box.h"
+#include "gear_quat_driven.h"
 #include "gear_quat_fields.h"
 #include "gear_quat_forces.h"
 #include "gear_quat_given_bodies.h"
-#include "gear_quat_minimize.h"
 #include "gear_quat_outputs.h"
 #include "gear_quat_step.h"
 #include "gear_quat_styles.h"

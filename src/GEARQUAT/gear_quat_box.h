@@ -8,18 +8,7 @@
    point.  If M = 1, positions, velocities and the box are the same to the last bit as without a
    moving box.
 
-   Periodic images of atoms and positions in LAMMPS' box.
-
-   A box that another fix changes during a run (doc/theory.md, Boxes that other commands change).
-
-   A fix that remaps atoms with the box notifies the rigid fixes before and after (Fix::deform()).
-   Then the centers of mass are remapped, and bodies keep their shapes, orientations and velocities:
-   an error of first order, as with fix rigid.
-
-   If the box changes without a remap, atoms do not move.  The center of mass of a body, which is
-   unwrapped, stays with its owner atom, and the other images of the body move with the box.  With
-   fix deform remap v a body gets the velocity of the image beyond a face when its owner atom
-   crosses it, and each atom has the velocity of its own image, like LAMMPS' atoms. */
+   Periodic images of atoms and positions in LAMMPS' box. */
 
 #ifndef LMP_GEAR_QUAT_BOX_H
 #define LMP_GEAR_QUAT_BOX_H
@@ -34,16 +23,9 @@
 
 namespace LAMMPS_NS {
 class Domain;
-class Fix;
 }    // namespace LAMMPS_NS
 
 namespace LAMMPS_NS::GearQuat {
-
-class Bodies;
-class Ownership;
-class Sites;
-class Step;
-struct Arguments;
 
 class Box : protected Pointers {
  public:
@@ -130,51 +112,6 @@ template <class Number> void through(const double *h, const Number *periods, dou
 
 /// The periods between the wrapped and the unwrapped position of an atom with these flags.
 std::array<int, 3> periods_of(imageint flags);
-
-/* ---------------------------------------------------------------------- */
-
-class DrivenBox : protected Pointers {
- public:
-  DrivenBox(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies,
-            Ownership &ownership, Sites &sites, Step &step) :
-      Pointers(lmp),
-      fix(fix), args(args), bodies(bodies), ownership(ownership), sites(sites), step(step)
-  {
-  }
-
-  /// Ends the run if another fix changes the box in a way that bodies cannot follow.  Before a run.
-  void init();
-  /// Called before a minimization, in which no other fix changes the box.
-  void rest() { driver = nullptr; }
-  /// True if another fix changes the box in this run.
-  bool any() const { return driver; }
-
-  /// Another fix has remapped atoms with the box, from Ownership::box().  Collective.
-  void end_remap();
-  /// Called before a step, and when the box may have changed without a remap.
-  void follow();
-  /// Called in LAMMPS' setup, before atoms are wrapped.
-  void begin_setup();
-  /// Called when bodies were made again.  Local.
-  void note_images();
-  /// Called when atoms were wrapped and exchanged, and bodies found again.  Collective.
-  void follow_images();
-  /// Called at the end of a run, when sites are placed in the last box.  Collective.
-  void end_run();
-
- private:
-  const Fix *fix;
-  const Arguments &args;
-  Bodies &bodies;
-  Ownership &ownership;
-  Sites &sites;
-  Step &step;
-  const Fix *driver = nullptr;    ///< a fix that changes the box in this run
-
-  void pass_faces(int ibody, const double *images);
-  void move_center(int ibody, const double *way);
-  void place_sites();
-};
 
 }    // namespace LAMMPS_NS::GearQuat
 

@@ -21,9 +21,6 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-static const char *const SHAPES[] = {"a point", "a sphere",   "an ellipsoid",
-                                     "a line",  "a triangle", "a body"};
-
 // an atom counts as changed by the user if its deviation exceeds rounding, relative
 
 static constexpr double SAME = 1.0e-11;
@@ -149,18 +146,14 @@ void Extended::refuse(const std::vector<int> &atoms) const
   }
   const bool superellipsoids = has_superellipsoids(atom, 0) != 0;
   tagint here[2] = {0, 0};    // of a shape that no fix moves, or that this plugin cannot read
-  int shape = POINT;
   for (const int i : atoms) {
     const int one = shape_of(i);
     if (one == BODY || (one == ELLIPSOID && superellipsoids))
       here[0] = atom->tag[i];
-    else if (one != POINT && one != SPHERE && !READS_ATOM_STYLES) {
+    else if (one != POINT && one != SPHERE && !READS_ATOM_STYLES)
       here[1] = atom->tag[i];
-      shape = one;
-    }
   }
   const auto found = over_ranks(MPI_MAX, here, world);
-  shape = over_ranks(MPI_MAX, shape, world);
   if (found[0])
     error->all(FLERR,
                "Fix gear/quat: atom {} is a particle of atom style body or a superellipsoid; the "
@@ -170,10 +163,10 @@ void Extended::refuse(const std::vector<int> &atoms) const
   if (found[1])
     error->all(
         FLERR,
-        "Fix gear/quat: atom {} is {}, which this plugin cannot turn, because it was "
-        "compiled without the headers for that; compile GEARQUAT for the source tree of your "
-        "LAMMPS: cmake -B build -D LAMMPS_SOURCE_DIR=/path/to/lammps",
-        found[1], SHAPES[shape]);
+        "Fix gear/quat: atom {} is an ellipsoid, a line or a triangle, which this plugin cannot "
+        "turn, because it was compiled without the headers for that; compile GEARQUAT for the "
+        "source tree of your LAMMPS: cmake -B build -D LAMMPS_SOURCE_DIR=/path/to/lammps",
+        found[1]);
 }
 
 /* ----------------------------------------------------------------------

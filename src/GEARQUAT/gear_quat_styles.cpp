@@ -278,17 +278,17 @@ void OtherFixes::init()
     const tagint atom = shared_atom(lmp, ownership, other);
     if (heats && atom)
       error->all(FLERR,
-                 "Fix gear/quat {} is a thermostat of the bodies, and fix {} ({}) is another one; "
+                 "Fix gear/quat {} is a thermostat of the bodies, and {} is another one; "
                  "leave out one of the two, or give the other one a group without atoms of bodies",
-                 args.thermostat.keyword(), other->id, other->style);
+                 args.thermostat.keyword(), name_of(other));
     if (!row) continue;
     if (row->is(Fact::TEMPERATURE | Fact::MOMENTUM)) {
       taken.push_back(other);
       if (atom && args.isokinetic != Isokinetic::NONE && row->is(Fact::TEMPERATURE))
         error->all(FLERR,
-                   "Fix gear/quat isokinetic keeps the kinetic energy, which fix {} ({}) changes; "
+                   "Fix gear/quat isokinetic keeps the kinetic energy, which {} changes; "
                    "leave out one of the two",
-                   other->id, other->style);
+                   name_of(other));
     } else if (row->is(Fact::REFLECTION) || (row->is(Fact::EXCHANGE) && !args.mol.empty())) {
       watched.push_back(other);
     } else {
@@ -301,16 +301,16 @@ void OtherFixes::init()
 void OtherFixes::refuse(Fix *other, const Style &row, tagint atom) const
 {
   if (row.is(Fact::ANY))
-    error->all(FLERR, "Fix gear/quat cannot be used with fix {} ({}): bodies do not follow it; {}",
-               other->id, other->style, row.instead);
+    error->all(FLERR, "Fix gear/quat cannot be used with {}: bodies do not follow it; {}",
+               name_of(other), row.instead);
   if (!atom || (row.is(Fact::CONSTRAINED) && other->dof(fix->igroup) == 0) ||
       (row.is(Fact::AT_INTEGRATION) &&
        !(modify->get_fix_mask(other) & FixConst::INITIAL_INTEGRATE)))
     return;
   error->all(FLERR,
-             "Fix gear/quat: fix {} ({}) changes single atoms of bodies, such as atom {}, and "
+             "Fix gear/quat: {} changes single atoms of bodies, such as atom {}, and "
              "bodies do not follow; {}",
-             other->id, other->style, atom, row.instead);
+             name_of(other), atom, row.instead);
 }
 
 void OtherFixes::warn_of_noise() const
