@@ -212,7 +212,6 @@ def test_numbers_at_the_head_of_the_readme_are_on_the_pages_that_it_links():
 def test_every_file_that_a_page_names_exists():
     """Tests and sources; names without a folder are of tests/lammps or of the package."""
     folders = [ROOT, ROOT / "tests" / "lammps", SOURCES, tree_source() / "src"]
-    folders.append(tree_source() / "tools" / "regression-tests")
     for page in PAGES:
         names = set(re.findall(r"`([\w/*-][\w./*-]*\.(?:py|cpp|h|sh|yaml))`", (ROOT / page).read_text()))
         missing = {name for name in names if not any(any(f.glob(name)) for f in folders)}

@@ -239,8 +239,7 @@ class Lammps:
 
 # A bare root has no /etc/hosts: every MPI looks up its own name at its start, and would wait 5 s or
 # more for a name server each time.
-# It also lacks /sys, where MPICH's UCX looks for networks: this would print an error, which LAMMPS'
-# regression tests count.
+# It also lacks /sys, where MPICH's UCX looks for networks: this would print an error.
 # In MPICH's collective operations for shared memory, a rank that waits neither yields nor sleeps.
 MPI_ENVIRONMENT = {"RES_OPTIONS": "attempts:0", "UCX_LOG_LEVEL": "fatal", "MPIR_CVAR_DEVICE_COLLECTIVES": "none"}
 
