@@ -222,7 +222,7 @@ void Assembly::find_extremes()
   for (int part = 0; part < parts.number(); ++part) {
     Body &body = made[part].body;
     body.natoms = (tagint) sizes[part].natoms;
-    body.rigid.mass = extremes[part].mass.value(scales(part).mass);
+    body.rigid.mass = extremes[part].mass.value();
     if (!body.from_file && !(body.rigid.mass > 0.0)) faulty[MASSLESS] = body.id;
   }
 }
@@ -251,15 +251,14 @@ void Assembly::find_moments()
   });
   for (int part = 0; part < parts.number(); ++part) {
     Made &one = made[part];
-    const Scales scale = scales(part);
     const auto from = middle(part);
     const double mass = one.body.rigid.mass;
     one.owner = moments[part].owner;
     one.owner_rank = moments[part].rank;
     one.local = moments[part].local;
     for (int k = 0; k < 3; ++k) {
-      one.state.center[k] = from[k] + moments[part].center[k].value(scale.center) / mass;
-      one.state.velocity[k] = moments[part].momentum[k].value(scale.momentum) / mass;
+      one.state.center[k] = from[k] + moments[part].center[k].value() / mass;
+      one.state.velocity[k] = moments[part].momentum[k].value() / mass;
     }
     if (sizes[part].natoms == 1)    // without rounding
       std::copy_n(atom->v[parts.atoms(part).first[0]], 3, one.state.velocity);
@@ -327,10 +326,9 @@ static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: on neither s
 void Assembly::find_axes(int part, const Momenta &momenta)
 {
   double tensor[9];
-  const Scales scale = scales(part);
   for (int m = 0; m < 6; ++m)
     tensor[3 * ROW[m] + COLUMN[m]] = tensor[3 * COLUMN[m] + ROW[m]] =
-        momenta.inertia_space[m].value(scale.inertia);
+        momenta.inertia_space[m].value();
   Made &one = made[part];
   if (one.body.from_file) {
     const double *i = given.at(one.body.id).inertia;
@@ -351,12 +349,10 @@ void Assembly::find_rotation(int part, const Momenta &momenta)
 {
   Made &one = made[part];
   const double *moments = one.body.rigid.inertia;
-  const Scales scale = scales(part);
   double momentum_space[3], momentum_body[3];
   for (int k = 0; k < 3; ++k)
-    momentum_space[k] = one.body.from_file
-        ? given.at(one.body.id).angular_momentum_space[k]
-        : momenta.angular_momentum_space[k].value(scale.angular_momentum);
+    momentum_space[k] = one.body.from_file ? given.at(one.body.id).angular_momentum_space[k]
+                                           : momenta.angular_momentum_space[k].value();
   quaternion_from_matrix(one.axes, one.state.q);
   to_body(one.axes, momentum_space, momentum_body);
   for (int k = 0; k < 3; ++k)

@@ -207,7 +207,7 @@ double Barostat::rate_of_heat() const
 void Barostat::combine(const Friction &alpha)
 {
   const double weights[3] = {weight_of(0), weight_of(1), weight_of(2)};
-  of_bodies = CellFriction(alpha, box.matrix(), rate, weights);
+  of_bodies = friction_in_cell(alpha, box.matrix(), rate, weights);
 }
 
 /// M and G of the history.
@@ -301,14 +301,12 @@ void Barostat::end_passes()
   note_rates(width);
 }
 
-void Barostat::place(const double *force, const double *predicted, BodyState &state,
-                     Correction &last) const
+double Barostat::work(const double *force, const double *predicted, const BodyState &state) const
 {
   double scaled_way[3], way[3];
   for (int k = 0; k < 3; ++k) scaled_way[k] = state.center[k] - predicted[k];
   box.matrix().times(scaled_way, way);
-  last.work += dot3(force, way) - dot3(force, scaled_way);
-  box.to_space(state);
+  return dot3(force, way);
 }
 
 void Barostat::end_step()
@@ -709,7 +707,7 @@ void Barostat::measure_virial(double **f)
   sum_over_ranks(of_arms, world);
   const auto all_styles = over_ranks(MPI_SUM, styles, world);
   for (int k = 0; k < 6; ++k) {
-    virial[k] = all_styles[PLACES[k]] - of_arms[k].value(scale);
+    virial[k] = all_styles[PLACES[k]] - of_arms[k].value();
     if (force->kspace) virial[k] += force->kspace->virial[PLACES[k]];    // the sum over all ranks
     virial[k] /= force->mvv2e;
   }

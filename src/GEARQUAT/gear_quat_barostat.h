@@ -108,9 +108,11 @@ class Barostat : protected Pointers {
   /// xi: the friction of the box.
   void pass(const Friction &alpha, double xi, double h);
   void end_passes();
-  /// A corrected state with a scaled center becomes unscaled.  predicted: its scaled center.
-  void place(const double *force, const double *predicted, BodyState &state,
-             Correction &last) const;
+  /// The work of a force on a body that moves from the scaled center `predicted` to the scaled center
+  /// of a state.
+  double work(const double *force, const double *predicted, const BodyState &state) const;
+  /// A state becomes unscaled.
+  void to_space(BodyState &state) const { box.to_space(state); }
   /// Corrected states are placed; LAMMPS gets the corrected box.
   void end_step();
   /// The step of length h is accepted.
@@ -137,13 +139,15 @@ class Barostat : protected Pointers {
     box.inverse_matrix().times(load.force, found.force);
     return found;
   }
-  void to_space(double *velocity) const
+  void to_space(Lanes (&velocities)[3]) const
   {
-    const double scaled[3] = {velocity[0], velocity[1], velocity[2]};
-    box.matrix().times(scaled, velocity);
+    const Lanes scaled[3] = {velocities[0], velocities[1], velocities[2]};
+    box.matrix().times(scaled, velocities);
   }
+  const Upper &matrix() const { return box.matrix(); }
+  const Upper &inverse_matrix() const { return box.inverse_matrix(); }
   /// Of all bodies, in the present pass.
-  const CellFriction &friction() const { return of_bodies; }
+  const Friction &friction() const { return of_bodies; }
 
   // limits
 
@@ -210,7 +214,7 @@ class Barostat : protected Pointers {
   Upper rate;           ///< G in the present pass, or at a node
   Upper correction;     ///< of M M^-1 by the corrector, in the last step
   Upper local_error;    ///< of M M^-1, of the last step
-  CellFriction of_bodies;
+  Friction of_bodies;
 
   // the oscillation of the box: its square frequency is the ratio of the means of -W drive'.G and
   // W G.G, from sums in which old steps fade

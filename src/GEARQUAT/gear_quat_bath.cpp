@@ -25,10 +25,10 @@ using namespace GearQuat;
 
 static constexpr double FEWEST_STEPS = 10.0;
 
-// the strongest friction that bodies follow, times the step; the part of it that a changing step
-// permits; and a weaker friction is as accurate if it is explicit
+// the strongest friction that bodies follow, times the step, and the part of it that a changing step
+// permits
 
-static constexpr double STRONGEST = 0.5, SAFE = 0.8, STRONG = 1.0e-3;
+static constexpr double STRONGEST = 0.5, SAFE = 0.8;
 
 // a part of the kinetic energy that stays below this fraction of its target for this many damping
 // times will not become warm: a separate chain increases it by several powers of ten in that time
@@ -38,6 +38,10 @@ static constexpr double COLD = 0.01, COLD_TIMES = 10.0;
 // targets that differ by less than this are equal up to rounding
 
 static constexpr double ROUNDING = 1.0e-12;
+
+// a change of the friction in a step that is rounding
+
+static constexpr double ROUNDING_OF_FRICTION = 1.0e-15;
 
 // a common motion of all bodies with less kinetic energy than this, in kT, is not reported
 
@@ -70,7 +74,6 @@ Bath::Bath(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, c
 
 void Bath::set_scheme(const Scheme &scheme)
 {
-  single_pass = scheme.coupled_passes() == 1;
   Scheme of_heat;
   of_heat.formulation = Formulation::FIRST;
   of_heat.rows = values_of_heat = isokinetic.acts()
@@ -156,14 +159,13 @@ void Bath::begin_run(bool anew, double h)
                  "does not hold the temperature, because friction does work all the time; add "
                  "keyword tchain 1",
                  words.length);
-    // a single pass uses only the predicted friction; tolerance limits a step to exactly this many
-    const double fewest = (single_pass ? 2.0 : 1.0) * FEWEST_STEPS;
-    if (words.damp < (1.0 - ROUNDING) * fewest * std::fabs(h) && comm->me == 0)
+    // tolerance limits a step to exactly this many
+    if (words.damp < (1.0 - ROUNDING) * FEWEST_STEPS * std::fabs(h) && comm->me == 0)
       error->warning(
           FLERR,
           "Fix gear/quat temp: a damping time of {:.3g} is less than {:.0f} time steps, and "
           "the motion may become unstable",
-          words.damp, fewest);
+          words.damp, FEWEST_STEPS);
   }
   box.begin_run(anew, h);
 }
@@ -238,14 +240,14 @@ void Bath::share_friction()
 {
   of_all = isokinetic.acts() ? isokinetic.multipliers()
                              : Multipliers{xi[TRANSLATION], xi[words.separate ? ROTATION : 0]};
-  of_all.implicit = strong;
+  of_all.implicit = !isokinetic.acts();
   std::copy_n(temperature.common, 3, of_all.common);
 }
 
-template <class Damper> Damper Bath::friction_of(int ibody, Damper found) const
+Friction Bath::friction_of(int ibody) const
 {
-  if constexpr (std::is_same_v<Damper, Friction>)
-    if (temperature.has_flow()) std::copy_n(temperature.flow_at(ibody).data(), 3, found.common);
+  Friction found = friction();
+  if (temperature.has_flow()) std::copy_n(temperature.flow_at(ibody).data(), 3, found.common);
   if (bodies.body_at(ibody).off == 0) return found;
   for (int k = 0; k < 3; ++k)
     if (!temperature.has(ibody, TRANSLATION, k)) found.release(k);
@@ -271,12 +273,8 @@ void Bath::measure()
 Load Bath::acting(int ibody) const
 {
   if (!acts()) return bodies.acting(ibody);
-  const RigidBody &rigid = bodies.rigid_of(ibody);
-  const BodyState &state = bodies.state_of(ibody);
-  if (box.moves())
-    return damped_load(rigid, box.scaled(state), box.scaled(bodies.acting(ibody)),
-                       friction_of(ibody, box.friction()));
-  return damped_load(rigid, state, bodies.acting(ibody), friction_of(ibody, of_all));
+  return damped_load(bodies.rigid_of(ibody), box.scaled(bodies.state_of(ibody)),
+                     scaled(bodies.acting(ibody)), friction_of(ibody));
 }
 
 /* ----------------------------------------------------------------------
@@ -328,56 +326,86 @@ void Bath::predict(const Integrator &integrator)
   box.choose_coefficients(coefficients_of_heat, values_of_heat);
 }
 
-void Bath::correct(const Integrator &integrator, int passes)
+void Bath::begin_correction(double h)
 {
-  const double h = integrator.step();
   begin_passes(h);
-  for_moved([&](int ibody) {
-    pending[ibody] =
-        integrator.begin(bodies.acting(ibody), bodies.axes(ibody), bodies.history(ibody));
-    const BodyState &s = bodies.state_of(ibody);
-    if (ibody < bodies.nowned()) add(ibody, s.velocity, s.omega_body, pending[ibody]);
-  });
+  if (!isokinetic.acts()) return;
+  isokinetic.sum_present();
+  note_friction();
+}
 
-  for (int pass = 0; pass < passes; ++pass) {
-    find_friction(integrator);
-    const bool sums = isokinetic.acts() || pass + 1 < passes;
+void Bath::add(const Integrator &integrator, const Friction &friction, const Block &block,
+               const int *ids)
+{
+  Velocities velocities = {};
+  integrator.find_velocities(block, friction, velocities);
+  if (box.moves()) box.to_space(velocities.linear);
+  temperature.add(block.count, ids, velocities);
+}
+
+/// The velocities that remain depend on the friction and the motion of the box, and these depend on
+/// the velocities.
+void Bath::find_friction(const Integrator &integrator)
+{
+  constexpr int MOST_ROUNDS = 8;
+  temperature.sum();
+  const int values = integrator.values();
+  const double h = integrator.step(), share = integrator.share();
+  const double free[2] = {temperature.twice[TRANSLATION], temperature.twice[ROTATION]};
+  const Upper free_tensor = temperature.tensor, to_scaled = box.inverse_matrix();
+  const double free_common[3] = {temperature.common[0], temperature.common[1],
+                                 temperature.common[2]};
+  double change = HUGE_VAL;
+  box.measure(of_all);
+  for (int round = 0; round < MOST_ROUNDS && change > ROUNDING_OF_FRICTION; ++round) {
+    const Friction before = friction();
+    const Upper left = (Upper::one() + before.damping.scaled(share)).inverse();
+    if (box.moves()) {
+      temperature.tensor = (box.matrix() * left * to_scaled).congruent(free_tensor);
+      temperature.twice[TRANSLATION] = temperature.tensor.trace();
+      const Upper dragged = (Upper::one() + before.drag.scaled(share)).inverse();
+      (box.matrix() * dragged * to_scaled).times(free_common, temperature.common);
+    } else {
+      temperature.twice[TRANSLATION] = left[0] * left[0] * free[TRANSLATION];
+    }
+    const double turning = before.implicit_torque(share);
+    temperature.twice[ROTATION] = turning * turning * free[ROTATION];
+    for (int c = 0; c < (int) chains.size(); ++c) {
+      const bool is_known = same_bodies || c >= thermostats;
+      advance(c, is_known ? twice_of(c) : chains[c].foretold(h, values), h, values);
+    }
+    note_friction();
+    box.pass(of_all, xi[OF_BOX], h);
+    change = std::fabs(h * (friction().rotation - before.rotation));
+    for (int k = 0; k < Upper::SIZE; ++k)
+      change = std::max(change, std::fabs(h * (friction().damping[k] - before.damping[k])));
+  }
+}
+
+void Bath::place(const Block &block, const int *ids, const double (*predicted)[3])
+{
+  for (int k = 0; k < block.count && box.moves(); ++k) {
+    BodyState &state = *block.states[k];
+    double &work = block.last[k]->work;
+    for (int i = 0; i < 3; ++i)
+      work -= block.loads[k]->force[i] * (state.center[i] - predicted[k][i]);
+    work += box.work(bodies.load_of(ids[k]).force, predicted[k], state);
+    box.to_space(state);
+  }
+}
+
+void Bath::end_correction(const Integrator &integrator)
+{
+  if (isokinetic.acts()) {
+    isokinetic.sum_present();
+    conclude(integrator.step());
     for_moved([&](int ibody) {
-      const RigidBody &rigid = bodies.rigid_of(ibody);
-      double *rows = bodies.history(ibody), velocity[3], omega_body[3];
-      const auto correct_pass = [&](const Load &load, const auto &friction) {
-        integrator.correct_pass(rigid, load, friction, rows, pending[ibody]);
-      };
-      const bool has_own = bodies.body_at(ibody).off != 0 || temperature.has_flow();
-      if (box.moves() && has_own)
-        correct_pass(box.scaled(bodies.acting(ibody)), friction_of(ibody, box.friction()));
-      else if (box.moves())
-        correct_pass(box.scaled(bodies.load_of(ibody)), box.friction());
-      else if (has_own)
-        correct_pass(bodies.acting(ibody), friction_of(ibody, of_all));
-      else
-        correct_pass(bodies.load_of(ibody), of_all);
-      if (ibody >= bodies.nowned() || !sums) return;
-      integrator.velocities_of_pass(rigid, rows, pending[ibody], velocity, omega_body);
-      if (box.moves()) box.to_space(velocity);
-      add(ibody, velocity, omega_body, pending[ibody]);
+      double *rows = bodies.history(ibody);
+      isokinetic.scale(integrator, bodies.rigid_of(ibody), rows);
+      integrator.body_state(bodies.rigid_of(ibody), rows, bodies.change_state(ibody),
+                            bodies.change_frame(ibody));
     });
   }
-  end_passes(h);
-
-  for_moved([&](int ibody) {
-    const RigidBody &rigid = bodies.rigid_of(ibody);
-    double *rows = bodies.history(ibody);
-    BodyState &state = bodies.change_state(ibody);
-    Correction &last = bodies.change_last(ibody);
-    const bool masked = bodies.body_at(ibody).off != 0 && !box.moves();
-    const BodyState before = masked ? state : BodyState();
-    last = integrator.finish(rigid, bodies.load_of(ibody), rows, pending[ibody]);
-    isokinetic.scale(integrator, rigid, rows);
-    integrator.body_state(rigid, rows, state, bodies.change_frame(ibody));
-    if (box.moves()) box.place(bodies.load_of(ibody).force, pending[ibody].x, state, last);
-    if (masked) last.work = work_between(bodies.load_of(ibody), before, state);
-  });
   box.end_step();
 }
 
@@ -389,39 +417,15 @@ void Bath::note_setting()
 
 void Bath::begin_passes(double h)
 {
-  pending.resize(bodies.nmoved());
   if (isokinetic.acts()) return;
   same_bodies = temperature.is_counted();
   temperature.aim(update->ntimestep);
   temperature.begin();
   note_setting();
-  strong = std::fabs(h) * strongest_friction() > STRONG;
   box.begin_passes(h);
 }
 
-void Bath::add(int ibody, const double *velocity, const double *omega_body,
-               const Integrator::Pending &pending)
-{
-  if (isokinetic.acts())
-    isokinetic.add(ibody, velocity, omega_body, pending.torque_body);
-  else
-    temperature.add(ibody, velocity, omega_body);
-}
-
-void Bath::find_friction(const Integrator &integrator)
-{
-  const int values = integrator.values();
-  const double h = integrator.step();
-  isokinetic.acts() ? isokinetic.sum() : temperature.sum();
-  for (int c = 0; c < (int) chains.size(); ++c) {
-    const bool is_known = same_bodies || c >= thermostats;
-    advance(c, is_known ? twice_of(c) : chains[c].foretold(h, values), h, values);
-  }
-  note_friction();
-  box.pass(of_all, xi[OF_BOX], h);
-}
-
-void Bath::end_passes(double h)
+void Bath::conclude(double h)
 {
   const double removed = isokinetic.acts() ? isokinetic.end_passes() : 0.0;
   for (auto &chain : chains) chain.conclude();

@@ -13,11 +13,12 @@
 
    Without these three acts() is false, and bodies move by their own loads.
 
-   Every step correct() corrects the predicted histories and states of all bodies: in every pass of
-   the corrector the sums determine the friction, and the friction determines the next velocities and
-   sums.  Bodies may start from rest: the friction of a chain is negative until forces have moved
-   them.  When bodies come or go, chains are predicted and not corrected, and receive their new
-   derivatives at the end of the step.
+   In every step one sum over all bodies determines friction, chains and box at its end, and then each
+   body is corrected once.  The terms are the velocities that the bodies would have without friction:
+   an implicit friction divides them by the same factor, so its equation needs no other sum.  Bodies
+   may start from rest: the friction of a chain is negative until forces have moved them.  When bodies
+   come or go, chains are predicted and not corrected, and receive their new derivatives at the end of
+   the step.
 
    The start finds histories by collocation (gear_quat_startup.h).  It calls either seed_local()
    alone, or begin_start(); for every pair of nodes foretell(), visit_node() at both nodes and
@@ -48,6 +49,8 @@ class Bath : protected Pointers {
   Bath(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, const Sites &sites);
 
   bool acts() const { return thermostats > 0 || isokinetic.acts() || box.moves(); }
+  /// After a step its states are read.
+  bool reads_states() const { return isokinetic.acts() || words.is_random(); }
   /// A temperature is defined for the bodies, by chains, random steps or a box.
   bool has_temperature() const { return words.damp > 0.0 || box.moves(); }
   /// False if its variables would be lost in a start.
@@ -77,8 +80,23 @@ class Bath : protected Pointers {
   void measure();
   /// The load on a body, including the friction; to be called after measure().  Local.
   Load acting(int ibody) const;
-  /// Corrects the predicted histories and states.
-  void correct(const Integrator &integrator, int passes);
+  /// Before bodies are corrected: sums over all bodies, with predicted histories and scaled loads,
+  /// determine friction, chains and box at the end of the step.
+  void begin_correction(double h);
+  bool needs_sums() const { return acts() && !isokinetic.acts(); }
+  void add(const Integrator &integrator, const Friction &friction, const Block &block,
+           const int *ids);    ///< local
+  void find_friction(const Integrator &integrator);
+  void conclude(double h);    ///< local
+  /// Of a body without masks or a flow, whose center is scaled.  Local.
+  const Friction &friction() const { return box.moves() ? box.friction() : of_all; }
+  /// Each body has a friction of its own, relative to the flow at its place.
+  bool has_flow() const { return temperature.has_flow(); }
+  Friction friction_of(int ibody) const;
+  Load scaled(const Load &load) const { return box.moves() ? box.scaled(load) : load; }
+  /// Corrected states with scaled centers become unscaled.  predicted: their scaled centers.  Local.
+  void place(const Block &block, const int *ids, const double (*predicted)[3]);
+  void end_correction(const Integrator &integrator);
   /// The step of length h is accepted.  Warns once of bodies that a thermostat cannot warm.
   void note_step(double h);
   /// Called in an accepted step, after insertions have histories and removals are complete.
@@ -141,17 +159,14 @@ class Bath : protected Pointers {
     double freedoms[2], damp;
     template <class V> void fields(V &v) { v(line, freedoms, damp); }
   };
-  Setting made = {};           ///< of the last step
-  bool single_pass = false;    ///< of the corrector
-  bool strong = false;         ///< the friction of this step is taken implicitly
-  bool same_bodies = true;     ///< no insertion or removal in this step
+  Setting made = {};          ///< of the last step
+  bool same_bodies = true;    ///< no insertion or removal in this step
   enum { OF_BOX = 2 };
   double xi[3] = {};      ///< xi_1 of the chains
   Friction of_all;        ///< of a body without masks or a flow, in the current pass
   double cold[2] = {};    ///< time that the parts have been cold
   bool warned[2] = {};    ///< of that
   std::string told;       ///< last message of the degrees of freedom
-  std::vector<Integrator::Pending> pending;    ///< in correct()
 
   // the start: 2K, which drives a chain from the start to each node, and the rate of the heat
 
@@ -167,19 +182,13 @@ class Bath : protected Pointers {
   void note_setting();
   void refuse_bodies() const;
   void tell_freedoms();
-  /// The friction of all bodies, without what does not act on this one, and relative to the flow.
-  template <class Damper> Damper friction_of(int ibody, Damper found) const;
   template <class Act> void for_moved(Act act);
   void sum_present();
   void note_friction();
   void settle_fresh(double h);
   void share_friction();
   void begin_passes(double h);
-  void add(int ibody, const double *velocity, const double *omega_body,
-           const Integrator::Pending &pending);
-  void find_friction(const Integrator &integrator);
   void advance(int chain, double twice_kinetic, double h, int values);
-  void end_passes(double h);
 };
 
 }    // namespace LAMMPS_NS::GearQuat

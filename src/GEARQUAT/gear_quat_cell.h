@@ -30,116 +30,23 @@
 
 namespace LAMMPS_NS::GearQuat {
 
-/// An upper triangular matrix, in the order of LAMMPS' Domain::h.
-struct Upper {
-  enum { XX, YY, ZZ, YZ, XZ, XY, SIZE };
-  static constexpr int ROW[] = {0, 1, 2, 1, 0, 0}, COLUMN[] = {0, 1, 2, 2, 2, 1};
-  std::array<double, SIZE> m = {};
-
-  template <class V> void fields(V &v) { v(m); }
-
-  static Upper one() { return {{1.0, 1.0, 1.0, 0.0, 0.0, 0.0}}; }
-
-  double &operator[](int k) { return m[k]; }
-  double operator[](int k) const { return m[k]; }
-
-  double determinant() const { return m[XX] * m[YY] * m[ZZ]; }
-  double trace() const { return m[XX] + m[YY] + m[ZZ]; }
-
-  /// this * v
-  void times(const double *v, double *product) const
-  {
-    for (int i = 0; i < 3; ++i) product[i] = row_times(i, v);
-  }
-  /// Row i of this * v
-  double row_times(int i, const double *v) const
-  {
-    if (i == 2) return m[ZZ] * v[2];
-    return i == 1 ? m[YY] * v[1] + m[YZ] * v[2] : m[XX] * v[0] + m[XY] * v[1] + m[XZ] * v[2];
-  }
-
-  Upper operator*(const Upper &o) const
-  {
-    return {{m[XX] * o[XX], m[YY] * o[YY], m[ZZ] * o[ZZ], m[YY] * o[YZ] + m[YZ] * o[ZZ],
-             m[XX] * o[XZ] + m[XY] * o[YZ] + m[XZ] * o[ZZ], m[XX] * o[XY] + m[XY] * o[YY]}};
-  }
-  Upper operator+(const Upper &o) const
-  {
-    Upper sum;
-    for (int k = 0; k < SIZE; ++k) sum[k] = m[k] + o[k];
-    return sum;
-  }
-  Upper operator-(const Upper &o) const { return *this + o.scaled(-1.0); }
-  Upper scaled(double factor) const
-  {
-    Upper product;
-    for (int k = 0; k < SIZE; ++k) product[k] = factor * m[k];
-    return product;
-  }
-  Upper inverse() const
-  {
-    const double x = 1.0 / m[XX], y = 1.0 / m[YY], z = 1.0 / m[ZZ];
-    return {{x, y, z, -m[YZ] * y * z, (m[XY] * m[YZ] * y - m[XZ]) * x * z, -m[XY] * x * y}};
-  }
-  /// sum_ab this_ab o_ab
-  double contracted(const Upper &o) const
-  {
-    double sum = 0.0;
-    for (int k = 0; k < SIZE; ++k) sum += m[k] * o[k];
-    return sum;
-  }
-};
-
-/* ---------------------------------------------------------------------- */
-
-/// Replaces Friction in a moving cell: the terms of Eq. P3 that depend on velocities, for the
-/// scaled momentum p = m X'.  A constant common velocity V = M c of all bodies is excluded from b.G
-/// and xi:
+/// The friction of the scaled momentum p = m X' in a moving cell: the terms of Eq. P3 that depend on
+/// velocities.  A constant common velocity V = M c of all bodies is excluded from b.G and xi:
 ///   p' = M^-1 F - damping (p - m c) - drag m c
-struct CellFriction {
-  Upper damping;                         ///< M^-1 (2 G + b.G + xi) M
-  Upper drag;                            ///< M^-1 G M
-  double common[3] = {0.0, 0.0, 0.0};    ///< as in Friction
-  double rotation = 0.0;
-  bool implicit = false;
-
-  CellFriction() = default;
-  /// alpha: of the thermostat, the same along all axes.  weights: b.
-  CellFriction(const Friction &alpha, const Upper &matrix, const Upper &rate,
-               const double (&weights)[3]) :
-      rotation(alpha.rotation),
-      implicit(alpha.implicit)
-  {
-    const Upper inverse = matrix.inverse();
-    double trace = alpha.translation[0];
-    for (int k = 0; k < 3; ++k) trace += weights[k] * rate[k];
-    drag = inverse * rate * matrix;
-    damping = drag.scaled(2.0) + Upper::one().scaled(trace);
-    inverse.times(alpha.common, common);
-  }
-
-  /// In a cell that does not shear, component i of a momentum in space does not change.
-  void release(int i) { damping[i] = drag[i]; }
-
-  double force(int i, double met, const double *p, double mass) const
-  {
-    double own[3];
-    for (int k = 0; k < 3; ++k) own[k] = p[k] - mass * common[k];
-    return met - damping.row_times(i, own) - mass * drag.row_times(i, common);
-  }
-  double torque(double met, double l) const { return met - rotation * l; }
-
-  /// See Friction::solve(); the equations of x, y and z are solved backwards.
-  void solve(double share, double *residual) const
-  {
-    double own[3] = {0.0, 0.0, 0.0};
-    for (int i = 2; i >= 0; --i) {
-      const double of_others = share * damping.row_times(i, own);
-      residual[i] = own[i] = (residual[i] - of_others) / (1.0 + share * damping[i]);
-    }
-  }
-  double implicit_torque(double share) const { return 1.0 / (1.0 + share * rotation); }
-};
+///   damping = M^-1 (2 G + b.G + xi) M,   drag = M^-1 G M
+/// alpha: of the thermostat, the same along all axes.  weights: b.
+inline Friction friction_in_cell(const Friction &alpha, const Upper &matrix, const Upper &rate,
+                                 const double (&weights)[3])
+{
+  Friction found = alpha;
+  const Upper inverse = matrix.inverse();
+  double trace = alpha.damping[0];
+  for (int k = 0; k < 3; ++k) trace += weights[k] * rate[k];
+  found.drag = inverse * rate * matrix;
+  found.damping = found.drag.scaled(2.0) + Upper::one().scaled(trace);
+  inverse.times(alpha.common, found.common);
+  return found;
+}
 
 /* ---------------------------------------------------------------------- */
 

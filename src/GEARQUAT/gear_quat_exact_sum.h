@@ -3,26 +3,28 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* A sum that does not depend on the order of its terms, nor on their distribution over ranks:
-   integers in units of 2^-73 of a scale that all terms share.  Terms are rounded to this unit;
-   otherwise the sum of up to 2^31 terms is exact, while it is below 2^20 scales.  Its value is 2^20
-   scales if a term is larger or not finite, or if the sum of a rank is larger.
+/* A sum that does not depend on the order of its terms, nor on their distribution over ranks: of
+   integers in doubles.  All terms share a scale, a power of two.  A term is divided into multiples
+   of 2^-33, 2^-55 and 2^-77 of it, whose sums are exact while they are below 2^53 such units: for up
+   to 2^31 terms and sums below 2^20 scales.  What is below 2^-78 is rounded.  Larger sums and terms
+   have rounding errors, and what is not finite makes the sum not finite.
 
-   Every rank adds its terms; the host sums `limbs` over all ranks element by element and calls
-   value(). */
+   Every rank adds its terms; the host sums `parts` over all ranks element by element, in any order,
+   and calls value().  Compilers that treat additions as associative (-ffast-math) undo this. */
 
 #ifndef GEAR_QUAT_EXACT_SUM_H
 #define GEAR_QUAT_EXACT_SUM_H
 
+#include "gear_quat_lanes.h"
+
 #include <cmath>
-#include <cstdint>
 
 namespace LAMMPS_NS::GearQuat {
 
-struct ExactSum {
-  static constexpr int LIMBS = 3;
-  /// In units of 2^-42 and 2^-73 of the scale; number of overflows.
-  std::int64_t limbs[LIMBS] = {};
+/// T: double, or Lanes for a sum of each lane.
+template <class T> struct ExactSumOf {
+  static constexpr int PARTS = 3;
+  T parts[PARTS] = {};
 
   /// The power of two above a positive number: a scale that depends on nothing else.
   static double scale_of(double number)
@@ -32,46 +34,41 @@ struct ExactSum {
     return std::ldexp(1.0, exponent);
   }
 
-  void add(double term, double scale)
+  GEAR_QUAT_INLINE void add(const T &term, double scale)
   {
-    const double units = term * (UPPER / scale);
-    if (!(std::fabs(units) < LARGEST)) {
-      ++limbs[2];
-      return;
+    T rest = term;
+    double rounds = ROUNDS * scale;    // to multiples of the unit
+#pragma GCC unroll 3
+    for (int k = 0; k < PARTS; ++k) {
+      const T units = (rest + rounds) - rounds;
+      parts[k] += units;
+      rest -= units;
+      rounds *= FINER;
     }
-    const auto whole = (std::int64_t) units;
-    const double rest = (units - (double) whole) * LOWER;
-    limbs[0] += whole;
-    limbs[1] += (std::int64_t)(rest + std::copysign(0.5, rest));
-    count_overflow();
   }
 
   /// Adds the terms of a sum with the same scale.
-  void add(const ExactSum &other)
+  void add(const ExactSumOf &other)
   {
-    for (int k = 0; k < LIMBS; ++k) limbs[k] += other.limbs[k];
-    count_overflow();
+    for (int k = 0; k < PARTS; ++k) parts[k] += other.parts[k];
+  }
+  /// The same of a lane.
+  template <class Other> void add_lane(const Other &other, int lane)
+  {
+    for (int k = 0; k < PARTS; ++k) parts[k] += get(other.parts[k], lane);
   }
 
-  double value(double scale) const
+  double value() const
   {
-    if (limbs[2] > 0) return LARGEST / UPPER * scale;
-    return (double(limbs[0]) + double(limbs[1]) / LOWER) / UPPER * scale;
+    return parts[0] + (parts[1] + parts[2]);
   }
 
  private:
-  static constexpr double LOWER = 2147483648.0;           ///< 2^31
-  static constexpr double UPPER = 2048.0 * LOWER;         ///< 2^42
-  static constexpr double LARGEST = UPPER * 1048576.0;    ///< 2^62
-
-  /// Two numbers below LARGEST can be added without an overflow of the integer.
-  void count_overflow()
-  {
-    if (std::fabs((double) limbs[0]) < LARGEST) return;
-    limbs[0] = 0;
-    ++limbs[2];
-  }
+  static constexpr double ROUNDS = 1.5 * 524288.0;    ///< 1.5 * 2^(52 - 33)
+  static constexpr double FINER = 1.0 / 4194304.0;    ///< 2^-22
 };
+
+using ExactSum = ExactSumOf<double>;
 
 }    // namespace LAMMPS_NS::GearQuat
 

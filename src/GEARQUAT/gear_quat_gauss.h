@@ -83,56 +83,67 @@ inline Multipliers scale_factors(Isokinetic mode, const KineticSums &wanted,
   return {both, both};
 }
 
-/// The rates at which the momenta of a body decay, 1/time: of its momentum along the axes of space,
-/// and of its angular momentum.
+/// The rates at which the momenta p of a body, along the axes of space, and its angular momentum L
+/// decay:
+///   p' = F - damping (p - m common) - drag m common,   L' = torque - rotation L
 struct Friction {
-  double translation[3] = {0.0, 0.0, 0.0};
+  Upper damping;
+  Upper drag;                            ///< of a moving cell (gear_quat_cell.h)
+  double common[3] = {0.0, 0.0, 0.0};    ///< velocity of a motion of all bodies that does not decay
   double rotation = 0.0;
-  /// Velocity of a motion of all bodies that does not decay.
-  double common[3] = {0.0, 0.0, 0.0};
   bool implicit = false;    ///< residuals are solved for the friction that they change
 
   Friction() = default;
-  Friction(const Multipliers &alpha) : rotation(alpha.rotation)
+  Friction(const Multipliers &alpha) :
+      damping(Upper::one().scaled(alpha.translation)), rotation(alpha.rotation)
   {
-    for (double &one : translation) one = alpha.translation;
   }
+  /// Component i of a momentum in space does not change; the cell does not shear.
+  void release(int i) { damping[i] = drag[i]; }
 
-  /// Component i of a momentum does not change.
-  void release(int i) { translation[i] = 0.0; }
-
-  // what acts on component i of a momentum p, or of an angular momentum l along the principal axes
-
-  double force(int i, double met, const double *p, double mass) const
+  /// The force with friction on a momentum p.
+  template <class T>
+  GEAR_QUAT_INLINE void add_to(const T *force, const T *p, const T &mass, T *damped) const
   {
-    return met - translation[i] * (p[i] - mass * common[i]);
+    T own[3], shared[3];
+    for (int i = 0; i < 3; ++i) {
+      shared[i] = mass * common[i];
+      own[i] = p[i] - shared[i];
+    }
+    for (int i = 0; i < 3; ++i)
+      damped[i] = force[i] - damping.row_times(i, own) - drag.row_times(i, shared);
   }
-  double torque(double met, double l) const { return met - rotation * l; }
+  template <class T> GEAR_QUAT_INLINE T torque(const T &met, const T &l) const
+  {
+    return met - rotation * l;
+  }
 
   // A residual r changes a velocity by `share` * r, and thus the friction.  The functions turn
   // explicit residuals into implicit residuals, for a rotation component by component.  share: with
   // the units of a time.
 
-  void solve(double share, double *residual) const
+  /// The equations of x, y and z are solved backwards.
+  template <class T> GEAR_QUAT_INLINE void solve(double share, T *residual) const
   {
-    for (int i = 0; i < 3; ++i) residual[i] /= 1.0 + share * translation[i];
+    T own[3] = {T(), T(), T()};
+    for (int i = 2; i >= 0; --i) {
+      const T of_others = share * damping.row_times(i, own);
+      residual[i] = own[i] = (residual[i] - of_others) / (1.0 + share * damping[i]);
+    }
   }
   double implicit_torque(double share) const { return 1.0 / (1.0 + share * rotation); }
 };
 
-/// The load with the forces of friction, -alpha (p - m common) and -alpha L.
-template <class Damper>
-Load damped_load(const RigidBody &body, const BodyState &state, const Load &load,
-                 const Damper &alpha)
+/// The load with the forces of friction.
+inline Load damped_load(const RigidBody &body, const BodyState &state, const Load &load,
+                        const Friction &alpha)
 {
   double momentum_space[3], momentum[3];
   momentum_along_space(body, state, momentum_space);
   Load damped = load;
   for (int i = 0; i < 3; ++i) momentum[i] = body.mass * state.velocity[i];
-  for (int i = 0; i < 3; ++i) {
-    damped.force[i] = alpha.force(i, load.force[i], momentum, body.mass);
-    damped.torque_space[i] -= alpha.rotation * momentum_space[i];
-  }
+  alpha.add_to(load.force, momentum, body.mass, damped.force);
+  for (int i = 0; i < 3; ++i) damped.torque_space[i] -= alpha.rotation * momentum_space[i];
   return damped;
 }
 

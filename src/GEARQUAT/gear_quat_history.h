@@ -72,10 +72,6 @@ struct Scheme {
   bool momentum() const { return formulation == Formulation::MOMENTUM; }
   int values() const { return rows ? rows : first() ? FIRST_PAPER : SECOND_PAPER; }
   int width() const { return first() ? FIRST_WIDTH : SECOND_WIDTH; }
-  /// Passes of all bodies together, with a bath.  The kinetic energy needs three passes to
-  /// converge: with two, water at long steps is heated with five values and cooled with seven.  Nine
-  /// values are for short steps.
-  int coupled_passes() const { return !momentum() ? passes : values() < 9 ? 3 : 2; }
   int carries() const { return compensate ? (first() ? 1 : 2) : 0; }
   /// Doubles of a history: rows, carries, trial rows.
   int size() const { return (values() + carries() + (remembers() ? 2 : 0)) * width(); }
@@ -146,7 +142,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
                       const double *residual)
   {
     double r[COUNT];    // a copy: residual may alias `rows`
-#pragma GCC unroll 4
+#pragma GCC unroll 7
     for (int c = 0; c < COUNT; ++c) r[c] = residual[c];
     for (int j = LOWEST; j < CARRIES; ++j) {
       double value[COUNT];
@@ -156,7 +152,7 @@ template <int WIDTH, int CARRIES = 0> struct Nordsieck {
     for (int j = LOWEST > CARRIES ? LOWEST : CARRIES; j < n; ++j) {
       const double coefficient = coefficients[j];
       double *row = rows + j * WIDTH + component;
-#pragma GCC unroll 4
+#pragma GCC unroll 7
       for (int c = 0; c < COUNT; ++c) row[c] += coefficient * r[c];
     }
   }
@@ -381,7 +377,7 @@ class Kinematics {
                 double *omega_body) const
   {
     double per_inertia[3], along[3];
-    inverse_moments(body, per_inertia);
+    inverse_moments(body.inertia, per_inertia);
     to_body(axes, momentum, along);
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) omega_body[i] = per_h * per_inertia[i] * along[i];

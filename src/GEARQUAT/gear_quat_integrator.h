@@ -8,16 +8,8 @@
      predict            evaluate (host)                   correct
      rows -> t + h  ->  sites at body_state(), forces  ->  rows at t + h
 
-   Momentum formulation, 6 components and the quaternion:
+   Momentum formulation, 6 components and the quaternion (gear_quat_momentum.h):
      x'' = F/m,  L' = torque along the axes of space
-   The quaternion turns exactly with the predicted L(t) (gear_quat_turn.h), then by a small rotation
-   from the residual r of the rows of L.  These have the coefficients of the rows of x, of which L'
-   is the second derivative: the angles follow L as x follows x'.
-   With a = I^-1 A r, m = h A L and w = I^-1 m, all along the principal axes, the small rotation is
-     c_0 a + kappa (w x a - I^-1 (w x A r + m x a))
-   The error of the predicted L(t) changes the rotation also by its first moment about the middle of
-   the step, in proportion to L.  This would not be symmetric in time and damp librations; the term
-   with kappa, the `moment` of gear_quat_coefficients.h, cancels it.
 
    First-order formulation (Evans), 13 components:
      x' = p/m,  p' = F,  q' = 1/2 W(q) omega,  omega' from Euler's equations
@@ -25,7 +17,7 @@
      x'' = F/m,  q'' = 1/2 W(q) (omega', -2 q'.q')
 
    Equation numbers: Pratt & Bin Mohamad Zaini.  Once per step the host calls predict(),
-   body_state(), [forces] and correct(), or for a body without moments of inertia the functions
+   find_states(), [forces] and correct(), or for a body without moments of inertia the functions
    whose names end in center. */
 
 #ifndef GEAR_QUAT_INTEGRATOR_H
@@ -34,18 +26,25 @@
 #include "gear_quat_coefficients.h"
 #include "gear_quat_gauss.h"
 #include "gear_quat_history.h"
+#include "gear_quat_momentum.h"
 #include "gear_quat_turn.h"
 
 namespace LAMMPS_NS::GearQuat {
 
-/// Replaces Friction where there is none.
-struct Undamped {
-  static constexpr bool implicit = false;
+/// Up to LANES bodies side by side; the results of each are independent of the others.
+struct Block {
+  int count = 0;
+  const RigidBody *bodies[LANES];
+  double *rows[LANES];
+  BodyState *states[LANES];
+  BodyFrame *frames[LANES];
+  const Load *loads[LANES];
+  Correction *last[LANES];
+};
 
-  double force(int, double met, const double *, double) const { return met; }
-  double torque(double met, double) const { return met; }
-  void solve(double, double *) const {}
-  double implicit_torque(double) const { return 1.0; }
+/// Of bodies side by side.
+struct Velocities {
+  Lanes linear[3], omega_body[3];
 };
 
 class Integrator : public Kinematics {
@@ -65,20 +64,33 @@ class Integrator : public Kinematics {
 
   int values() const { return n; }
 
-  /// Up to Turn::LANES bodies; each result is independent of the others.
-  void predict(int count, const RigidBody *const *bodies, double *const *rows) const
+  void predict(const Block &block) const
   {
-    double turned[Turn::LANES][4];
-    if (scheme.momentum()) turn(count, bodies, rows, turned);
+    double turned[LANES][4];
+    if (scheme.momentum()) turn(block, turned);
     with_history([&](auto history) {
-      for (int body = 0; body < count; ++body) predict(history, turned[body], rows[body]);
+      for (int body = 0; body < block.count; ++body)
+        predict(history, turned[body], block.rows[body]);
     });
   }
   void predict(const RigidBody &body, double *rows) const
   {
-    const RigidBody *one = &body;
-    predict(1, &one, &rows);
+    Block one;
+    one.count = 1;
+    one.bodies[0] = &body;
+    one.rows[0] = rows;
+    predict(one);
   }
+
+  /// Poses, velocities and frames of the bodies.
+  void find_states(const Block &block) const;
+  /// Formulation momentum: the velocities after a correction without friction.  An implicit friction
+  /// xi divides them by 1 + share() * xi, up to the change of the orientation by the correction.
+  /// Other formulations: the velocities after a correction with this friction, and share() is 0.
+  void find_velocities(const Block &block, const Friction &friction, Velocities &found) const;
+  double share() const { return scheme.momentum() ? 0.5 * h * corrector.c[1] : 0.0; }
+  /// Corrects predicted histories with the loads at the predicted poses, all with this friction.
+  void correct(const Block &block, const Friction &friction) const;
 
   void predict_center(double *rows) const
   {
@@ -100,89 +112,14 @@ class Integrator : public Kinematics {
     }
   }
 
-  /// Corrects a predicted history with the load at the predicted pose, then projects.  axes: of
-  /// this pose, from axes_of().
-  Correction correct(const RigidBody &body, const Load &load, const double *axes,
-                     double *rows) const
+  /// Corrects a predicted history with the load at the predicted pose, then projects.
+  Correction correct(const RigidBody &body, const Load &load, double *rows,
+                     const Friction &friction = Friction()) const
   {
-    if (scheme.momentum()) {
-      Residual total;
-      position_residual(body, load, rows, total.x);
-      momentum_residual(load.torque_space, rows, total.q);
-      return correct_momenta(body, load, axes, total, rows);
-    }
-    Pending pending = begin(load, axes, rows);
-    for (int k = 0; k < scheme.passes; ++k) correct_pass(body, load, Undamped(), rows, pending, k);
+    Pending pending = begin(load, axes_of(rows).data(), rows);
+    const int passes = scheme.momentum() ? 1 : scheme.passes;
+    for (int k = 0; k < passes; ++k) correct_pass(body, load, friction, rows, pending, k);
     return finish(body, load, rows, pending);
-  }
-  Correction correct(const RigidBody &body, const Load &load, double *rows) const
-  {
-    return correct(body, load, axes_of(rows).data(), rows);
-  }
-
-  // With a friction that depends on all bodies: begin(), [friction] and correct_pass() for each
-  // pass, finish(), and in the first-order form also scale_momenta().
-
-  struct Residual {    ///< summed over the passes
-    double x[3];
-    double q[4];    ///< formulation momentum: of L, three components
-  };
-  /// The part of the prediction that a correction needs.
-  struct Pending {
-    double x[3], q[4], torque_body[3];
-    Residual total;
-  };
-
-  Pending begin(const Load &load, const double *axes, const double *rows) const
-  {
-    Pending pending;
-    copy(rows + Scheme::POSITION, 3, pending.x);
-    copy(rows + scheme.quaternion(), 4, pending.q);
-    to_body(axes, load.torque_space, pending.torque_body);
-    pending.total = Residual();
-    return pending;
-  }
-
-  /// Damper: Friction, or a class with the same functions.  earlier: passes without friction.
-  template <class Damper>
-  void correct_pass(const RigidBody &body, const Load &load, const Damper &friction, double *rows,
-                    Pending &pending, int earlier = 0) const
-  {
-    with_history([&](auto history) {
-      pass(history, body, load, friction, rows, pending, earlier);
-    });
-  }
-
-  /// The velocities after the passes so far.
-  void velocities_of_pass(const RigidBody &body, const double *rows, const Pending &pending,
-                          double *velocity, double *omega_body) const
-  {
-    if (scheme.first()) {
-      for (int i = 0; i < 3; ++i) velocity[i] = rows[Scheme::MOMENTUM + i] / body.mass;
-      copy(rows + Scheme::OMEGA, 3, omega_body);
-    } else if (scheme.momentum()) {
-      double momentum[3];
-      momentum_of_pass(rows, pending.total.q, momentum);
-      velocity_of_pass(rows, pending.total.x, velocity);
-      omega_of(body, axes_of(rows).data(), momentum, omega_body);
-    } else {
-      double q[4], qdot[4];
-      velocity_of_pass(rows, pending.total.x, velocity);
-      rotation_of_pass(rows, pending.total.q, q, qdot);
-      angular_velocity(q, scheme.norm2(q), qdot, omega_body);
-    }
-  }
-
-  /// Projects |q| = 1 and, in the second-order form, q.qdot = 0.
-  Correction finish(const RigidBody &body, const Load &load, double *rows,
-                    const Pending &pending) const
-  {
-    if (scheme.momentum())    // axes: predicted
-      return correct_momenta(body, load, axes_of(rows).data(), pending.total, rows);
-    with_history([&](auto history) {
-      finish_passes(history, rows, pending);
-    });
-    return conclude(load, rows, pending);
   }
 
   /// A rotation about an axis without inertia does not change: it has no momentum.
@@ -219,23 +156,72 @@ class Integrator : public Kinematics {
   {
     double per_inertia[3];
     to_body(axes, momentum, turn);
-    inverse_moments(body, per_inertia);
+    inverse_moments(body.inertia, per_inertia);
     for (int i = 0; i < 3; ++i) turn[i] *= per_inertia[i];
   }
 
   /// Torque and moments of inertia are not used.
-  Correction correct_center(const RigidBody &body, const Load &load, double *rows) const
+  Correction correct_center(const RigidBody &body, const Load &load, double *rows,
+                            const Friction &friction = Friction()) const
   {
     double x[3], residual[3] = {0.0, 0.0, 0.0}, dx[3];
     copy(rows + Scheme::POSITION, 3, x);
     with_history([&](auto history) {
-      correct_center(history, body, load, Undamped(), rows, residual);
+      correct_center(history, body, load, friction, rows, residual);
     });
     for (int i = 0; i < 3; ++i) dx[i] = rows[i] - x[i];
     return {dot3(load.force, dx), corrector.weight2 * dot3(residual, residual), 0.0};
   }
 
  private:
+  struct Residual {    ///< summed over the passes
+    double all[7] = {};
+    double *x() { return all; }
+    double *q() { return all + 3; }    ///< formulation momentum: of L, three components
+    const double *x() const { return all; }
+    const double *q() const { return all + 3; }
+  };
+  /// The part of the prediction that a correction needs.
+  struct Pending {
+    double x[3], q[4], torque_body[3];
+    Residual total;
+  };
+
+  Pending begin(const Load &load, const double *axes, const double *rows) const
+  {
+    Pending pending;
+    copy(rows + Scheme::POSITION, 3, pending.x);
+    copy(rows + scheme.quaternion(), 4, pending.q);
+    to_body(axes, load.torque_space, pending.torque_body);
+    pending.total = Residual();
+    return pending;
+  }
+
+  /// earlier: passes without friction.
+  void correct_pass(const RigidBody &body, const Load &load, const Friction &friction, double *rows,
+                    Pending &pending, int earlier = 0) const
+  {
+    with_history([&](auto history) {
+      pass(history, body, load, friction, rows, pending, earlier);
+    });
+  }
+
+  /// Projects |q| = 1 and, in the second-order form, q.qdot = 0.
+  Correction finish(const RigidBody &body, const Load &load, double *rows,
+                    const Pending &pending) const
+  {
+    if (scheme.momentum()) {
+      Corrected<double> found;
+      std::copy_n(pending.total.all, 6, found.residual);
+      momentum_step().turn(predicted(body, load, rows), found);
+      return apply(found, rows);
+    }
+    with_history([&](auto history) {
+      finish_passes(history, rows, pending);
+    });
+    return conclude(load, rows, pending);
+  }
+
   template <int CARRIES> using First = Nordsieck<Scheme::FIRST_WIDTH, CARRIES>;
   template <int CARRIES> using Second = Nordsieck<Scheme::SECOND_WIDTH, CARRIES>;
   template <int CARRIES> struct Momenta : Second<CARRIES> {
@@ -264,22 +250,22 @@ class Integrator : public Kinematics {
   }
 
   /// The changes of quaternions with the momenta of histories that are not predicted yet.
-  void turn(int count, const RigidBody *const *bodies, double *const *rows,
-            double (*turned)[4]) const
+  void turn(const Block &block, double (*turned)[4]) const
   {
-    const double *first[Turn::LANES];
-    for (int body = 0; body < count; ++body) first[body] = rows[body] + Scheme::SECOND_QUATERNION;
+    const double *first[LANES];
+    for (int body = 0; body < block.count; ++body)
+      first[body] = block.rows[body] + Scheme::SECOND_QUATERNION;
     // velocity Verlet turns bodies with the angular momentum of half a step, so it is symmetric in time
-    double half[Turn::LANES][2 * Scheme::SECOND_WIDTH];
-    for (int body = 0; body < count && scheme.is_verlet(); ++body) {
+    double half[LANES][2 * Scheme::SECOND_WIDTH];
+    for (int body = 0; body < block.count && scheme.is_verlet(); ++body) {
       std::copy_n(first[body], 2 * Scheme::SECOND_WIDTH, half[body]);
       for (int i = 0; i < 3; ++i)
         half[body][Scheme::SECOND_WIDTH + i] += first[body][2 * Scheme::SECOND_WIDTH + i];
       first[body] = half[body];
     }
-    turning.changes(count, bodies, first, Scheme::SECOND_WIDTH, turned);
-    for (int body = 0; body < count && scheme.remembers(); ++body)
-      turning.change_in_parts(*bodies[body], first[body], Scheme::SECOND_WIDTH, turned[body]);
+    turning.changes(block.count, block.bodies, first, Scheme::SECOND_WIDTH, turned);
+    for (int body = 0; body < block.count && scheme.remembers(); ++body)
+      turning.change_in_parts(*block.bodies[body], first[body], Scheme::SECOND_WIDTH, turned[body]);
   }
 
   /// Calls act with the kind of history that this scheme has.
@@ -311,17 +297,16 @@ class Integrator : public Kinematics {
   }
 
   /// Momenta (Eq. 14) and positions (Eq. 13).
-  template <int CARRIES, class Damper>
+  template <int CARRIES>
   void correct_center(First<CARRIES> history, const RigidBody &body, const Load &load,
-                      const Damper &damper, double *rows, double *residual) const
+                      const Friction &friction, double *rows, double *residual) const
   {
     const double *rates = rows + scheme.width(), *momentum = rows + Scheme::MOMENTUM;
-    double before[3], target[3];
+    double before[3], damped[3], target[3];
     copy(momentum, 3, before);
-    for (int i = 0; i < 3; ++i)
-      target[i] =
-          h * damper.force(i, load.force[i], before, body.mass) - rates[Scheme::MOMENTUM + i];
-    if (damper.implicit) damper.solve(h * corrector.c[0], target);
+    friction.add_to(load.force, before, body.mass, damped);
+    for (int i = 0; i < 3; ++i) target[i] = h * damped[i] - rates[Scheme::MOMENTUM + i];
+    if (friction.implicit) friction.solve(h * corrector.c[0], target);
     feed_back<3>(history, rows, Scheme::MOMENTUM, target);
     const double *p = scheme.predicted_momentum ? before : momentum;
     for (int i = 0; i < 3; ++i) target[i] = h * p[i] / body.mass - rates[Scheme::POSITION + i];
@@ -329,9 +314,9 @@ class Integrator : public Kinematics {
   }
 
   /// Angular velocities (Eqs. 7, 15) and quaternions (Eqs. 5, 16).
-  template <int CARRIES, class Damper>
+  template <int CARRIES>
   void correct_rotation(First<CARRIES> history, const RigidBody &body, const double *torque_body,
-                        const Damper &damper, double *rows, double *residual) const
+                        const Friction &damper, double *rows, double *residual) const
   {
     const int quat = scheme.quaternion();
     const double *rates = rows + scheme.width(), *omega_body = rows + Scheme::OMEGA;
@@ -350,13 +335,13 @@ class Integrator : public Kinematics {
     feed_back<4>(history, rows, quat, target, residual);
   }
 
-  template <int CARRIES, class Damper>
-  void pass(First<CARRIES> history, const RigidBody &body, const Load &load, const Damper &friction,
-            double *rows, Pending &pending, int earlier) const
+  template <int CARRIES>
+  void pass(First<CARRIES> history, const RigidBody &body, const Load &load,
+            const Friction &friction, double *rows, Pending &pending, int earlier) const
   {
     if (earlier == 0)    // with constant forces once is sufficient
-      correct_center(history, body, load, friction, rows, pending.total.x);
-    correct_rotation(history, body, pending.torque_body, friction, rows, pending.total.q);
+      correct_center(history, body, load, friction, rows, pending.total.x());
+    correct_rotation(history, body, pending.torque_body, friction, rows, pending.total.q());
   }
 
   template <int CARRIES>
@@ -374,97 +359,41 @@ class Integrator : public Kinematics {
     angular_velocity(pending.q, dot4(pending.q, pending.q), dq, angle_body);
     const Residual &total = pending.total;
     return {dot3(load.force, dx) + dot3(pending.torque_body, angle_body),
-            corrector.weight2 * dot3(total.x, total.x), corrector.weight2 * dot4(total.q, total.q)};
+            corrector.weight2 * dot3(total.x(), total.x()),
+            corrector.weight2 * dot4(total.q(), total.q())};
   }
 
   // the momentum formulation
 
-  /// The small rotation of the correction, along the principal axes.  Returns |a|^2.
-  double small_rotation(const RigidBody &body, const double *axes, const double *rows,
-                        const double *residual, double *angle_body) const
+  MomentumStep momentum_step() const { return {corrector, h}; }
+
+  static Predicted<double> predicted(const RigidBody &body, const Load &load, const double *rows)
   {
-    double per_inertia[3], along[3], a[3], m[3], w[3], bent[3], lever[3], turned[3];
-    inverse_moments(body, per_inertia);
-    to_body(axes, residual, along);
-    to_body(axes, rows + Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM, m);
-#pragma GCC unroll 3
-    for (int i = 0; i < 3; ++i) {
-      a[i] = per_inertia[i] * along[i];
-      w[i] = per_inertia[i] * m[i];
-    }
-    cross3(w, along, bent);
-    cross3(m, a, lever);
-    cross3(w, a, turned);
-#pragma GCC unroll 3
-    for (int i = 0; i < 3; ++i)
-      angle_body[i] = corrector.c[0] * a[i] +
-          corrector.moment * (turned[i] - per_inertia[i] * (bent[i] + lever[i]));
-    return dot3(a, a);
+    Predicted<double> now;
+    now.set_lane(0, body, load, rows);
+    return now;
   }
 
-  /// The change of q by a small turn, of which the result has |q| = 1.
-  static void small_turn(const double *q, const double *angle_body, double *change)
+  Correction apply(const Corrected<double> &found, double *rows) const
   {
-    double after[4];
-    quaternion_rate(q, angle_body, change);
-    for (int i = 0; i < 4; ++i) after[i] = q[i] + change[i];
-    const double missing = missing_length(after);
-    for (int i = 0; i < 4; ++i) change[i] += missing * after[i];
-  }
-
-  void momentum_residual(const double *torque_space, const double *rows, double *residual) const
-  {
-    const double *seconds = rows + 2 * Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM;
-    const double half_h2 = 0.5 * h * h;
-    for (int i = 0; i < 3; ++i) residual[i] = half_h2 * torque_space[i] - seconds[i];
-  }
-
-  /// h L after the passes so far.
-  void momentum_of_pass(const double *rows, const double *total, double *momentum) const
-  {
-    const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::ANGULAR_MOMENTUM;
-    for (int i = 0; i < 3; ++i) momentum[i] = rates[i] + corrector.c[1] * total[i];
-  }
-
-  /// Corrects the rows with these residuals.  axes: predicted.
-  Correction correct_momenta(const RigidBody &body, const Load &load, const double *axes,
-                             const Residual &total, double *rows) const
-  {
-    return scheme.compensate ? correct_momenta(Momenta<2>(), body, load, axes, total, rows)
-                             : correct_momenta(Momenta<0>(), body, load, axes, total, rows);
+    scheme.compensate ? apply(Momenta<2>(), found, rows) : apply(Momenta<0>(), found, rows);
+    return {found.work, found.position_error2, found.quaternion_error2};
   }
   template <int CARRIES>
-  Correction correct_momenta(Momenta<CARRIES> history, const RigidBody &body, const Load &load,
-                             const double *axes, const Residual &total, double *rows) const
+  void apply(Momenta<CARRIES> history, const Corrected<double> &found, double *rows) const
   {
-    double angle[3], change[4], torque_body[3];
-    const double error2 = small_rotation(body, axes, rows, total.q, angle);
-    history.template correct<3>(rows, n, corrector.c.data(), Scheme::POSITION, total.x);
-    history.template correct<3, 1>(rows, n, corrector.c.data(), Scheme::ANGULAR_MOMENTUM, total.q);
-    small_turn(rows + Scheme::SECOND_QUATERNION, angle, change);
-    history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, change);
-    to_body(axes, load.torque_space, torque_body);
-    return {corrector.c[0] * dot3(load.force, total.x) + dot3(torque_body, angle),
-            corrector.weight2 * dot3(total.x, total.x), 0.25 * corrector.weight2 * error2};
+    double place[3];
+    for (int i = 0; i < 3; ++i) place[i] = corrector.c[0] * found.residual[i];
+    history.template add<3>(rows, n, 0, Scheme::POSITION, place);
+    history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, found.q);
+    history.template correct<6, 1>(rows, n, corrector.c.data(), 0, found.residual);
   }
 
-  template <int CARRIES, class Damper>
-  void pass(Momenta<CARRIES>, const RigidBody &body, const Load &load, const Damper &friction,
+  template <int CARRIES>
+  void pass(Momenta<CARRIES>, const RigidBody &body, const Load &load, const Friction &friction,
             double *rows, Pending &pending, int) const
   {
-    const double *rates = rows + Scheme::SECOND_WIDTH;
-    double damped[3], momentum[3];
-    pass_of_center(body, load, friction, rows, pending.total.x);
-    if (friction.implicit)
-      copy(rates + Scheme::ANGULAR_MOMENTUM, 3, momentum);
-    else
-      momentum_of_pass(rows, pending.total.q, momentum);
-    for (int i = 0; i < 3; ++i)
-      damped[i] = friction.torque(load.torque_space[i], per_h * momentum[i]);
-    momentum_residual(damped, rows, pending.total.q);
-    if (!friction.implicit) return;
-    const double part = friction.implicit_torque(0.5 * h * corrector.c[1]);
-    for (int i = 0; i < 3; ++i) pending.total.q[i] *= part;
+    momentum_step().find_residual(predicted(body, load, rows), friction, pending.total.all);
   }
 
   /// Positions (Eq. 17): forces are constant, so one pass is sufficient.
@@ -478,18 +407,17 @@ class Integrator : public Kinematics {
   }
 
   template <int CARRIES>
-  void correct_center(Second<CARRIES> history, const RigidBody &body, const Load &load, Undamped,
-                      double *rows, double *residual) const
+  void correct_center(Second<CARRIES> history, const RigidBody &body, const Load &load,
+                      const Friction &friction, double *rows, double *residual) const
   {
-    position_residual(body, load, rows, residual);
+    pass_of_center(body, load, friction, rows, residual);
     history.template correct<3>(rows, n, corrector.c.data(), Scheme::POSITION, residual);
   }
 
   /// The residual of the quaternion after another pass (Eqs. 6, 7, 18).  total: earlier.  With c_2
   /// = 1 the residuals of all passes add up to target - prediction, so the history is corrected
   /// once.
-  template <class Damper>
-  void rotation_residual(const RigidBody &body, const double *torque_body, const Damper &damper,
+  void rotation_residual(const RigidBody &body, const double *torque_body, const Friction &damper,
                          const double *rows, double *total) const
   {
     const double *seconds = rows + 2 * Scheme::SECOND_WIDTH + Scheme::SECOND_QUATERNION;
@@ -519,8 +447,7 @@ class Integrator : public Kinematics {
   }
 
   /// The residual of positions with a friction.
-  template <class Damper>
-  void pass_of_center(const RigidBody &body, const Load &load, const Damper &friction,
+  void pass_of_center(const RigidBody &body, const Load &load, const Friction &friction,
                       const double *rows, double *total) const
   {
     const double *rates = rows + Scheme::SECOND_WIDTH + Scheme::POSITION;
@@ -531,19 +458,18 @@ class Integrator : public Kinematics {
     else
       velocity_of_pass(rows, total, velocity);
     for (int i = 0; i < 3; ++i) momentum[i] = body.mass * velocity[i];
-    for (int i = 0; i < 3; ++i)
-      damped.force[i] = friction.force(i, load.force[i], momentum, body.mass);
+    friction.add_to(load.force, momentum, body.mass, damped.force);
     position_residual(body, damped, rows, total);
     if (friction.implicit) friction.solve(0.5 * h * corrector.c[1], total);
   }
 
   /// Computes only residuals: rows stay predicted until finish_passes().
-  template <int CARRIES, class Damper>
-  void pass(Second<CARRIES>, const RigidBody &body, const Load &load, const Damper &friction,
+  template <int CARRIES>
+  void pass(Second<CARRIES>, const RigidBody &body, const Load &load, const Friction &friction,
             double *rows, Pending &pending, int) const
   {
-    double before[4], *total = pending.total.q;
-    pass_of_center(body, load, friction, rows, pending.total.x);
+    double before[4], *total = pending.total.q();
+    pass_of_center(body, load, friction, rows, pending.total.x());
     copy(total, 4, before);
     rotation_residual(body, pending.torque_body, friction, rows, total);
     if (friction.implicit)
@@ -567,10 +493,8 @@ class Integrator : public Kinematics {
   template <int CARRIES>
   void finish_passes(Second<CARRIES> history, double *rows, const Pending &pending) const
   {
-    double residual[Scheme::SECOND_WIDTH];
-    copy(pending.total.x, 3, residual + Scheme::POSITION);
-    copy(pending.total.q, 4, residual + Scheme::SECOND_QUATERNION);
-    history.template correct<Scheme::SECOND_WIDTH>(rows, n, corrector.c.data(), 0, residual);
+    history.template correct<Scheme::SECOND_WIDTH>(rows, n, corrector.c.data(), 0,
+                                                   pending.total.all);
     if (scheme.project) project(history, rows);
   }
 
@@ -584,15 +508,6 @@ class Integrator : public Kinematics {
     const double radial = -dot4(q, rates);
     for (int i = 0; i < 4; ++i) change[i] = radial * q[i];
     history.template add<4>(rows, n, 1, Scheme::SECOND_QUATERNION, change);
-  }
-
-  /// 1/|q| - 1.
-  static double missing_length(const double *q)
-  {
-    const double norm2 = dot4(q, q), part = 1.0 - norm2;
-    if (std::fabs(part) < 1.0e-4) return part * (0.5 + part * (0.375 + part * 0.3125));
-    const double norm = std::sqrt(norm2);
-    return part / (norm * (1.0 + norm));
   }
 
   /// |q| = 1 (Eq. 3), as an increment, so that a compensated row keeps its digits.

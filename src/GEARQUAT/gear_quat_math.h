@@ -20,17 +20,22 @@
 #ifndef GEAR_QUAT_MATH_H
 #define GEAR_QUAT_MATH_H
 
+#include "gear_quat_lanes.h"
+
+#include <array>
 #include <cmath>
 #include <utility>
 
 namespace LAMMPS_NS::GearQuat {
 
-inline double dot3(const double *a, const double *b)
+// T: double, or Lanes for several bodies side by side (gear_quat_lanes.h)
+
+template <class T> GEAR_QUAT_INLINE T dot3(const T *a, const T *b)
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-inline double dot4(const double *a, const double *b)
+template <class T> GEAR_QUAT_INLINE T dot4(const T *a, const T *b)
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
 }
@@ -46,7 +51,7 @@ inline double distance2(const double *a, const double *b)
   return dot3(d, d);
 }
 
-inline void cross3(const double *a, const double *b, double *out)
+template <class T> GEAR_QUAT_INLINE void cross3(const T *a, const T *b, T *out)
 {
   out[0] = a[1] * b[2] - a[2] * b[1];
   out[1] = a[2] * b[0] - a[0] * b[2];
@@ -62,7 +67,7 @@ inline void add3(const double *a, double *sum)
 }
 
 /// out = W(q) a, the matrix of Eqs. 5 and 6; it is the quaternion product q a.
-inline void w_times(const double *q, const double *a, double *out)
+template <class T> GEAR_QUAT_INLINE void w_times(const T *q, const T *a, T *out)
 {
   out[0] = q[3] * a[0] - q[2] * a[1] + q[1] * a[2] + q[0] * a[3];
   out[1] = q[2] * a[0] + q[3] * a[1] - q[0] * a[2] + q[1] * a[3];
@@ -79,9 +84,9 @@ inline void w_transposed_times(const double *q, const double *a, double *out)
 }
 
 /// qdot = 1/2 W(q) (omega_body, 0), Eq. 5.
-inline void quaternion_rate(const double *q, const double *omega_body, double *qdot)
+template <class T> GEAR_QUAT_INLINE void quaternion_rate(const T *q, const T *omega_body, T *qdot)
 {
-  const double half[4] = {0.5 * omega_body[0], 0.5 * omega_body[1], 0.5 * omega_body[2], 0.0};
+  const T half[4] = {0.5 * omega_body[0], 0.5 * omega_body[1], 0.5 * omega_body[2], T()};
   w_times(q, half, qdot);
 }
 
@@ -107,13 +112,13 @@ inline void angular_velocity(const double *q, double norm2, const double *qdot, 
 /// A(q), Eq. 8, row-major: e_body = A e_space.
 /// norm2 = |q|^2 gives a rotation for every q: sites stay rigid between prediction and projection.
 /// norm2 = 1 is Eq. 8 as it is, a rotation only to the accuracy of |q| = 1.
-inline void rotation_matrix(const double *q, double norm2, double a[9])
+template <class T> GEAR_QUAT_INLINE void rotation_matrix(const T *q, const T &norm2, T *a)
 {
-  const double s = 2.0 / norm2;
-  const double xx = s * q[0] * q[0], yy = s * q[1] * q[1], zz = s * q[2] * q[2];
-  const double ww = s * q[3] * q[3];
-  const double xy = s * q[0] * q[1], xz = s * q[0] * q[2], yz = s * q[1] * q[2];
-  const double xw = s * q[0] * q[3], yw = s * q[1] * q[3], zw = s * q[2] * q[3];
+  const T s = 2.0 / norm2;
+  const T xx = s * q[0] * q[0], yy = s * q[1] * q[1], zz = s * q[2] * q[2];
+  const T ww = s * q[3] * q[3];
+  const T xy = s * q[0] * q[1], xz = s * q[0] * q[2], yz = s * q[1] * q[2];
+  const T xw = s * q[0] * q[3], yw = s * q[1] * q[3], zw = s * q[2] * q[3];
   a[0] = xx + ww - 1.0;
   a[1] = xy + zw;
   a[2] = xz - yw;
@@ -126,7 +131,7 @@ inline void rotation_matrix(const double *q, double norm2, double a[9])
 }
 
 /// e_body = A e_space, Eq. 10.
-inline void to_body(const double a[9], const double *space, double *body)
+template <class T> GEAR_QUAT_INLINE void to_body(const T *a, const T *space, T *body)
 {
   body[0] = a[0] * space[0] + a[1] * space[1] + a[2] * space[2];
   body[1] = a[3] * space[0] + a[4] * space[1] + a[5] * space[2];
@@ -134,7 +139,7 @@ inline void to_body(const double a[9], const double *space, double *body)
 }
 
 /// e_space = A^T e_body, Eq. 9.
-inline void to_space(const double a[9], const double *body, double *space)
+template <class T> GEAR_QUAT_INLINE void to_space(const T *a, const T *body, T *space)
 {
   space[0] = a[0] * body[0] + a[3] * body[1] + a[6] * body[2];
   space[1] = a[1] * body[0] + a[4] * body[1] + a[7] * body[2];
@@ -169,6 +174,81 @@ inline double angle_about_z(const double *q)
 {
   return q[3] < 0.0 ? 2.0 * std::atan2(-q[2], -q[3]) : 2.0 * std::atan2(q[2], q[3]);
 }
+
+/* ---------------------------------------------------------------------- */
+
+/// An upper triangular matrix, in the order of LAMMPS' Domain::h.
+struct Upper {
+  enum { XX, YY, ZZ, YZ, XZ, XY, SIZE };
+  static constexpr int ROW[] = {0, 1, 2, 1, 0, 0}, COLUMN[] = {0, 1, 2, 2, 2, 1};
+  std::array<double, SIZE> m = {};
+
+  template <class V> void fields(V &v) { v(m); }
+
+  static Upper one() { return {{1.0, 1.0, 1.0, 0.0, 0.0, 0.0}}; }
+
+  double &operator[](int k) { return m[k]; }
+  double operator[](int k) const { return m[k]; }
+
+  double determinant() const { return m[XX] * m[YY] * m[ZZ]; }
+  double trace() const { return m[XX] + m[YY] + m[ZZ]; }
+
+  /// this * v
+  template <class T> GEAR_QUAT_INLINE void times(const T *v, T *product) const
+  {
+    for (int i = 0; i < 3; ++i) product[i] = row_times(i, v);
+  }
+  /// Row i of this * v
+  template <class T> GEAR_QUAT_INLINE T row_times(int i, const T *v) const
+  {
+    if (i == 2) return m[ZZ] * v[2];
+    return i == 1 ? m[YY] * v[1] + m[YZ] * v[2] : m[XX] * v[0] + m[XY] * v[1] + m[XZ] * v[2];
+  }
+
+  Upper operator*(const Upper &o) const
+  {
+    return {{m[XX] * o[XX], m[YY] * o[YY], m[ZZ] * o[ZZ], m[YY] * o[YZ] + m[YZ] * o[ZZ],
+             m[XX] * o[XZ] + m[XY] * o[YZ] + m[XZ] * o[ZZ], m[XX] * o[XY] + m[XY] * o[YY]}};
+  }
+  Upper operator+(const Upper &o) const
+  {
+    Upper sum;
+    for (int k = 0; k < SIZE; ++k) sum[k] = m[k] + o[k];
+    return sum;
+  }
+  Upper operator-(const Upper &o) const { return *this + o.scaled(-1.0); }
+  Upper scaled(double factor) const
+  {
+    Upper product;
+    for (int k = 0; k < SIZE; ++k) product[k] = factor * m[k];
+    return product;
+  }
+  Upper inverse() const
+  {
+    const double x = 1.0 / m[XX], y = 1.0 / m[YY], z = 1.0 / m[ZZ];
+    return {{x, y, z, -m[YZ] * y * z, (m[XY] * m[YZ] * y - m[XZ]) * x * z, -m[XY] * x * y}};
+  }
+  /// this * s * transposed, for a symmetric matrix s, of which s has the upper half.
+  Upper congruent(const Upper &s) const
+  {
+    const auto place = [](int i, int j) {
+      return i == j ? i : 6 - i - j;
+    };
+    Upper found;
+    for (int k = 0; k < SIZE; ++k)
+      for (int i = ROW[k]; i < 3; ++i)
+        for (int j = COLUMN[k]; j < 3; ++j)
+          found[k] += m[place(ROW[k], i)] * s[place(i, j)] * m[place(COLUMN[k], j)];
+    return found;
+  }
+  /// sum_ab this_ab o_ab
+  double contracted(const Upper &o) const
+  {
+    double sum = 0.0;
+    for (int k = 0; k < SIZE; ++k) sum += m[k] * o[k];
+    return sum;
+  }
+};
 
 /* ---------------------------------------------------------------------- */
 
@@ -242,10 +322,14 @@ inline void angular_acceleration(const RigidBody &body, const double *torque_bod
 }
 
 /// 1/I, 0 for an axis without inertia.
-inline void inverse_moments(const RigidBody &body, double *per_inertia)
+template <class T> GEAR_QUAT_INLINE void inverse_moments(const T *inertia, T *per_inertia)
 {
+  const T zero = T(), one = zero + 1.0;
 #pragma GCC unroll 3
-  for (int i = 0; i < 3; ++i) per_inertia[i] = body.inertia[i] > 0.0 ? 1.0 / body.inertia[i] : 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const T moment = inertia[i] > zero ? inertia[i] : one;
+    per_inertia[i] = inertia[i] > zero ? one / moment : zero;
+  }
 }
 
 /// The torque along the principal axes, Eq. 10.  norm2: see rotation_matrix().

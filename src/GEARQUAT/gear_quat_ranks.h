@@ -93,11 +93,11 @@ template <typename T> T over_ranks(MPI_Op op, T here, World world)
 /// Exact sums over all ranks, element by element.
 template <size_t N> void sum_over_ranks(ExactSum (&sums)[N], World world)
 {
-  constexpr int LIMBS = ExactSum::LIMBS;
-  bigint here[N * LIMBS];
-  for (size_t k = 0; k < N * LIMBS; ++k) here[k] = sums[k / LIMBS].limbs[k % LIMBS];
+  constexpr int PARTS = ExactSum::PARTS;
+  double here[N * PARTS];
+  for (size_t k = 0; k < N * PARTS; ++k) here[k] = sums[k / PARTS].parts[k % PARTS];
   const auto all = over_ranks(MPI_SUM, here, world);
-  for (size_t k = 0; k < N * LIMBS; ++k) sums[k / LIMBS].limbs[k % LIMBS] = all[k];
+  for (size_t k = 0; k < N * PARTS; ++k) sums[k / PARTS].parts[k % PARTS] = all[k];
 }
 
 /// Sends each item to its rank, and returns the items received.

@@ -125,7 +125,7 @@ Correction RememberedLoads::correct(const StepControl &control, const Integrator
                                     const double *axes, double *rows, StepErrors &found) const
 {
   const Row before = accelerations(rows);
-  const Correction correction = integrator.correct(body, load, axes, rows);
+  const Correction correction = integrator.correct(body, load, rows);
   Row dropped, change, place, rate;
   std::copy_n(trial_of(rows) + Scheme::SECOND_WIDTH, Scheme::SECOND_WIDTH, dropped.begin());
   found = errors(control, integrator, body, reach, load, axes, before, rows, change);

@@ -401,6 +401,7 @@ void Sites::add_arm_virial(double **f, ExactSum *sums, double scale) const
         sum[5] += on_site[0] * arm[1];
       },
       [sums, scale](int, const Products &sum) {
+        if (sum == Products{}) return;    // no arms
         for (int k = 0; k < 6; ++k) sums[k].add(sum[k], scale);
       });
 }

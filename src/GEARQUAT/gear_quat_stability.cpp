@@ -56,7 +56,7 @@ void MotionSums::add(const RigidBody &body, const BodyState &state, const Taylor
   const double mean = (inertia[0] + inertia[1] + inertia[2]) / freedoms;
   double axes[9], per_inertia[3], size[LEVELS] = {};    // squares of step^k y^(k)
   rotation_matrix(state.q, dot4(state.q, state.q), axes);
-  inverse_moments(body, per_inertia);
+  inverse_moments(body.inertia, per_inertia);
   double factorial = 1.0;
   for (int k = 0; k < known; ++k) {
     factorial *= k + 2;

@@ -14,6 +14,7 @@
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
+#include "universe.h"
 #include "update.h"
 #include "utils.h"
 
@@ -148,6 +149,15 @@ void Step::end_run()
   if (started && update->nsteps >= SHORT) {
     note_rates(MotionSums::LEAST_PART * edge_by_loads());
     warn_of_rates();
+  }
+  if (phase == Phase::CORRECTED) {    // LAMMPS has ended the run before its last step
+    for (int ibody = 0; ibody < bodies.nmoved() && !reads_states(); ++ibody) {
+      BodyState &state = bodies.change_state(ibody);
+      integrator->body_state(bodies.rigid_of(ibody), bodies.history(ibody), state,
+                             bodies.change_frame(ibody));
+      if (bath.box.moves()) bath.box.to_space(state);
+    }
+    place_correction();
   }
   if (phase == Phase::ENDED) phase = Phase::BETWEEN;
 }
@@ -510,12 +520,12 @@ void Step::begin(int vflag, double **f)
 void Step::end(double **f, double **torque)
 {
   others.watch_places();
-  phase = Phase::ENDED;
+  const bool is_read = is_read_at_end();
   for (;;) {
     sites.gather_loads(f, torque);
     // here, since the atoms are at the positions of the forces
     if (bath.box.others_ask_for_virial()) tally(vflag_of_step, f);
-    correct(f);
+    correct(f, is_read || reads_states());
     if (!tolerance || tolerance->accepts()) break;
     shorten();
     predict(f);
@@ -523,9 +533,8 @@ void Step::end(double **f, double **torque)
     tolerance->evaluate(vflag_of_step);
   }
   accept(f);
-  ownership.spread_moved();
-  sites.place(true);
-  if (reads_at_end(lmp, fix)) comm->forward_comm();    // ghosts are where forces were evaluated
+  phase = Phase::CORRECTED;
+  if (is_read) place_correction();
 }
 
 void Step::choose_next()
@@ -569,20 +578,17 @@ void Step::predict(double **f)
     integrator->center_state(bodies.rigid_of(ibody), seen(rows), bodies.change_state(ibody));
     check(ibody);
   }
-  for (size_t first = 0; first < bodies.tops.size(); first += Turn::LANES) {
-    const RigidBody *rigid[Turn::LANES];
-    double *rows[Turn::LANES];
-    const int count = std::min(bodies.tops.size() - first, (size_t) Turn::LANES);
-    for (int k = 0; k < count; ++k) {
-      rigid[k] = &bodies.rigid_of(bodies.tops[first + k]);
-      rows[k] = bodies.history(bodies.tops[first + k]);
-    }
-    integrator->predict(count, rigid, rows);
-  }
-  for (const int ibody : bodies.tops) {
-    integrator->body_state(bodies.rigid_of(ibody), seen(bodies.history(ibody)),
-                           bodies.change_state(ibody), bodies.change_frame(ibody));
-    check(ibody);
+  for (size_t first = 0; first < bodies.tops.size();) {
+    const Block block = block_of(bodies.tops, first, LANES);
+    integrator->predict(block);
+    if (verlet)
+      for (int k = 0; k < block.count; ++k)
+        integrator->body_state(*block.bodies[k], seen(block.rows[k]), *block.states[k],
+                               *block.frames[k]);
+    else
+      integrator->find_states(block);
+    for (int k = 0; k < block.count; ++k) check(bodies.tops[first + k]);
+    first += block.count;
   }
   bath.predict(*integrator);
 }
@@ -593,44 +599,135 @@ void Step::place_prediction()
   sites.place(velocities_read);
 }
 
-void Step::correct(double **f)
+/// Up to `most` bodies of a list; one with masks is alone.
+Block Step::block_of(const std::vector<int> &list, size_t first, size_t most)
 {
-  if (bath.acts()) {
-    if (tolerance) tolerance->note_prediction();
-    bath.correct(*integrator, scheme().coupled_passes());
-    if (tolerance) tolerance->note_correction(*integrator, bath);
-    return;
+  Block block;
+  const size_t end = std::min(list.size(), first + most);
+  for (size_t n = first; n < end; ++n) {
+    const int ibody = list[n], k = block.count;
+    const Body &body = bodies.body_at(ibody);
+    if (body.off && k > 0) break;
+    block.bodies[k] = &body.rigid;
+    block.rows[k] = bodies.history(ibody);
+    block.states[k] = &bodies.change_state(ibody);
+    block.frames[k] = &bodies.change_frame(ibody);
+    block.loads[k] = &bodies.load_of(ibody);
+    block.last[k] = &bodies.change_last(ibody);
+    ++block.count;
+    if (body.off) break;
   }
-  for (const int ibody : bodies.points) correct_body<true>(ibody, f);
-  for (const int ibody : bodies.tops) correct_body<false>(ibody, f);
+  return block;
 }
 
-/// IS_POINT: without moments of inertia.
-template <bool IS_POINT> inline void Step::correct_body(int ibody, double **f)
+/// Replaces the loads of a block where they are not those of the bodies.
+void Step::scale(Block &block, const int *ids, Scaled &scaled) const
 {
-  double *rows = bodies.history(ibody);
-  const Body &body = bodies.body_at(ibody);
-  BodyState &state = bodies.change_state(ibody), before;
-  const Load *acting = &bodies.load_of(ibody);
-  Load masked;
-  if (body.off) {
-    masked = bodies.acting(ibody);
-    acting = &masked;
-    before = state;
+  const bool in_box = bath.box.moves();
+  for (int k = 0; k < block.count && (in_box || bodies.body_at(*ids).off); ++k) {
+    scaled.loads[k] = bath.scaled(bodies.acting(ids[k]));
+    block.loads[k] = &scaled.loads[k];
+    std::copy_n(block.rows[k], 3, scaled.centers[k]);
   }
-  Correction &last = bodies.change_last(ibody);
-  if (tolerance)
-    last = tolerance->correct(*integrator, ibody, *acting);
-  else if (IS_POINT)
-    last = integrator->correct_center(body.rigid, *acting, rows);
-  else
-    last = integrator->correct(body.rigid, *acting, bodies.axes(ibody), rows);
-  if (IS_POINT)
-    integrator->center_state(body.rigid, rows, state);
-  else
-    integrator->body_state(body.rigid, rows, state, bodies.change_frame(ibody));
-  if (body.off) last.work = work_between(bodies.load_of(ibody), before, state);
-  if (!tolerance) watch(ibody, f);
+}
+
+/// states: they will be read, and are determined.
+void Step::correct(double **f, bool states)
+{
+  const Way way = {tolerance && !bath.acts(), bath.acts() && bath.has_flow(), states};
+  if (bath.acts()) {
+    if (tolerance) tolerance->note_prediction();
+    bath.begin_correction(integrator->step());
+    constexpr int ROUNDS = 3;    // where velocities depend on the friction in another way
+    for (int n = 0; n < (scheme().momentum() ? 1 : ROUNDS) && bath.needs_sums(); ++n) {
+      for (const auto *list : {&bodies.points, &bodies.tops}) sum(*list, way);
+      bath.find_friction(*integrator);
+    }
+    if (bath.needs_sums()) bath.conclude(integrator->step());
+  }
+  correct<true>(bodies.points, way, f);
+  correct<false>(bodies.tops, way, f);
+  if (bath.acts()) bath.end_correction(*integrator);
+  if (bath.acts() && states) watch_all(f);    // otherwise their predictions were tested
+  if (bath.acts() && tolerance) tolerance->note_correction(*integrator, bath);
+}
+
+void Step::sum(const std::vector<int> &list, const Way &way)
+{
+  const size_t most = way.has_flow ? 1 : LANES;
+  for (size_t first = 0; first < list.size();) {
+    Block block = block_of(list, first, most);
+    const int *const ids = &list[first];
+    const bool is_special = bodies.body_at(*ids).off || way.has_flow;
+    Scaled scaled;
+    scale(block, ids, scaled);
+    bath.add(*integrator, is_special ? bath.friction_of(*ids) : bath.friction(), block, ids);
+    first += block.count;
+  }
+}
+
+template <bool ARE_POINTS>
+void Step::correct(const std::vector<int> &list, const Way &way, double **f)
+{
+  const bool coupled = bath.acts();
+  const size_t most = way.one_by_one || way.has_flow ? 1 : LANES;
+  for (size_t first = 0; first < list.size();) {
+    Block block = block_of(list, first, most);
+    const int *const ids = &list[first];
+    const Body &body = bodies.body_at(*ids);
+    const bool is_special = body.off || way.has_flow, masked = body.off && !bath.box.moves();
+    const BodyState before = masked ? *block.states[0] : BodyState();
+    Scaled scaled;
+    scale(block, ids, scaled);
+    Friction own;
+    if (is_special && coupled) own = bath.friction_of(*ids);
+    const Friction &friction = is_special ? own : bath.friction();
+    if (way.one_by_one)
+      *block.last[0] = tolerance->correct(*integrator, *ids, *block.loads[0]);
+    else if (ARE_POINTS)
+      for (int k = 0; k < block.count; ++k)
+        *block.last[k] =
+            integrator->correct_center(*block.bodies[k], *block.loads[k], block.rows[k], friction);
+    else
+      integrator->correct(block, friction);
+    first += block.count;
+    if (!way.states && !masked) continue;
+    if (!ARE_POINTS) integrator->find_states(block);
+    for (int k = 0; ARE_POINTS && k < block.count; ++k)
+      integrator->center_state(*block.bodies[k], block.rows[k], *block.states[k]);
+    if (masked) block.last[0]->work = work_between(bodies.load_of(*ids), before, *block.states[0]);
+    bath.place(block, ids, scaled.centers);
+    for (int k = 0; k < block.count && !coupled && !tolerance; ++k) watch(ids[k], f);
+  }
+}
+
+/// False if no output, fix or command reads the atoms before the next prediction replaces their
+/// positions.  At forces, fixes read the prediction.
+bool Step::is_read_at_end() const
+{
+  constexpr int AT_FORCES = FixConst::PRE_FORCE | FixConst::PRE_REVERSE | FixConst::POST_FORCE |
+      FixConst::END_OF_STEP | FixConst::MIN_PRE_EXCHANGE | FixConst::MIN_PRE_NEIGHBOR |
+      FixConst::MIN_POST_NEIGHBOR | FixConst::MIN_PRE_FORCE | FixConst::MIN_PRE_REVERSE |
+      FixConst::MIN_POST_FORCE | FixConst::MIN_ENERGY;
+  if (update->ntimestep == update->laststep || reads_at_end(lmp, fix)) return true;
+  if (lmp->universe->nworlds > 1 || !utils::strmatch(update->integrate_style, "^verlet"))
+    return true;
+  for (int i = 0; i < modify->nfix; ++i) {
+    const Fix *other = modify->fix[i];
+    if (((modify->fmask[i] & ~AT_FORCES) && !fleet.find(other)) ||
+        utils::strmatch(other->style, "^event"))
+      return true;
+  }
+  return false;
+}
+
+/// Atoms get the corrected states.
+void Step::place_correction()
+{
+  ownership.spread_moved();
+  sites.place(true);
+  if (reads_at_end(lmp, fix)) comm->forward_comm();    // ghosts are where forces were evaluated
+  phase = Phase::ENDED;
 }
 
 /// Restores the histories to the beginning of the step, for another try.
@@ -649,7 +746,7 @@ void Step::shorten()
 void Step::accept(double **f)
 {
   const double h = integrator->step();
-  if (tolerance || bath.acts()) watch_all(f);    // otherwise correct_body() has done this
+  if (tolerance) watch_all(f);    // otherwise correct() has done this
   bath.note_step(h);
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {

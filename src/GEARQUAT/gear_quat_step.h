@@ -42,13 +42,14 @@ namespace LAMMPS_NS::GearQuat {
 
 /// The present time of a fix.
 enum class Phase {
-  DEFINED,     ///< the command has made the bodies, whose atoms the user may still change
-  COMPARED,    ///< bodies were compared with their atoms, or are from a restart file; no run yet
-  SET_UP,      ///< LAMMPS has set up a run
-  READY,       ///< histories are ready for its first step
-  BEGUN,       ///< in a step, which LAMMPS evaluates forces for
-  ENDED,       ///< a step has ended
-  BETWEEN      ///< a run has ended
+  DEFINED,      ///< the command has made the bodies, whose atoms the user may still change
+  COMPARED,     ///< bodies were compared with their atoms, or are from a restart file; no run yet
+  SET_UP,       ///< LAMMPS has set up a run
+  READY,        ///< histories are ready for its first step
+  BEGUN,        ///< in a step, which LAMMPS evaluates forces for
+  CORRECTED,    ///< a step has ended; states and atoms are those of the prediction
+  ENDED,        ///< a step has ended, and atoms have its states
+  BETWEEN       ///< a run has ended
 };
 
 class Step;
@@ -224,8 +225,26 @@ class Step : protected Pointers {
 
   void predict(double **f);
   void place_prediction();
-  void correct(double **f);
-  template <bool IS_POINT> void correct_body(int ibody, double **f);
+  /// Of a block: the loads that act, with scaled forces, and the scaled centers of a prediction.
+  struct Scaled {
+    Load loads[LANES];
+    double centers[LANES][3];
+  };
+  /// How a list of bodies is corrected.
+  struct Way {
+    bool one_by_one;    ///< not side by side
+    bool has_flow;      ///< each has a friction of its own
+    bool states;        ///< are determined, and tested
+  };
+  Block block_of(const std::vector<int> &list, size_t first, size_t most);
+  void scale(Block &block, const int *ids, Scaled &scaled) const;
+  void correct(double **f, bool states);
+  void sum(const std::vector<int> &list, const Way &way);
+  template <bool ARE_POINTS> void correct(const std::vector<int> &list, const Way &way, double **f);
+  bool is_read_at_end() const;
+  /// After a step the fix reads its states itself.
+  bool reads_states() const { return tolerance || bath.reads_states() || scheme().is_verlet(); }
+  void place_correction();
   void shorten();
   void accept(double **f);
 

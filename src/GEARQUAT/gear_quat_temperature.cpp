@@ -42,7 +42,7 @@ Temperature::Temperature(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
     subtracted(words.subtracted), fix(fix), bodies(bodies), words(words),
     start(words.damp > 0.0 ? words.start : pressure.temperature),
     stop(words.damp > 0.0 ? words.stop : pressure.temperature),
-    components(pressure.any() ? Upper::SIZE : 0)
+    wanted{1.0, 1.0, pressure.any(), {}}
 {
 }
 
@@ -154,7 +154,7 @@ void Temperature::count()
   outside = find_outside();
   of_total = 0;
   for (int k = 0; k < 3; ++k) {
-    mass[k] = masses[k].value(unit);
+    mass[k] = masses[k].value();
     count_of[k] = all[k];
     constant[k] = count_of[k] > 0.0 &&
         (stated ? subtracted >= d
@@ -186,30 +186,64 @@ double Temperature::unit_of_energies() const
 
 void Temperature::begin()
 {
-  energies = unit_of_energies();
-  momenta = LARGE_MOMENTA *
+  wanted.energies = unit_of_energies();
+  wanted.momenta = LARGE_MOMENTA *
       ExactSum::scale_of(std::sqrt(line.kt * std::max({mass[0], mass[1], mass[2]})));
-  for (auto &sum : sums) sum = ExactSum();
+  std::copy_n(constant, 3, wanted.constant);
+  for (auto &sum : sums) sum = ExactSumOf<Lanes>();
 }
 
-void Temperature::add(int ibody, const double *velocity, const double *omega_body)
+GEAR_QUAT_INLINE void Temperature::add_to(ExactSumOf<Lanes> *sums, const Moving &moving,
+                                          const Wanted &wanted)
 {
-  const RigidBody &rigid = bodies.rigid_of(ibody);
-  double along[3] = {velocity[0], velocity[1], velocity[2]};
-  const bool masked = bodies.body_at(ibody).off != 0;
-  if (has_flow()) {
-    const auto flow = flow_at(ibody);
-    for (int k = 0; k < 3; ++k) along[k] -= flow[k];
+  Lanes rotation = {}, p[3];
+  for (int k = 0; k < 3; ++k) {
+    p[k] = moving.mass * moving.velocities.linear[k];
+    rotation +=
+        moving.inertia[k] * moving.velocities.omega_body[k] * moving.velocities.omega_body[k];
+    if (wanted.constant[k]) sums[MOMENTUM + k].add(p[k], wanted.momenta);
   }
-  for (int k = 0; masked && k < 3; ++k)
-    if (!has(ibody, TRANSLATION, k)) along[k] = 0.0;
-  sums[TRANSLATION].add(2.0 * translational_energy(rigid, along), energies);
-  if (!masked || has(ibody, ROTATION))
-    sums[ROTATION].add(2.0 * rotational_energy(rigid, omega_body), energies);
-  for (int k = 0; k < components; ++k)
-    sums[TENSOR + k].add(rigid.mass * along[Upper::ROW[k]] * along[Upper::COLUMN[k]], energies);
-  for (int k = 0; k < 3; ++k)
-    if (constant[k]) sums[MOMENTUM + k].add(rigid.mass * along[k], momenta);
+  sums[ROTATION].add(rotation, wanted.energies);
+  if (!wanted.tensor) sums[TRANSLATION].add(dot3(p, moving.velocities.linear), wanted.energies);
+  for (int k = 0; wanted.tensor && k < Upper::SIZE; ++k)
+    sums[TENSOR + k].add(p[Upper::ROW[k]] * moving.velocities.linear[Upper::COLUMN[k]],
+                         wanted.energies);
+}
+
+#if defined(GEAR_QUAT_FOR_AVX2)
+GEAR_QUAT_FOR_AVX2 void Temperature::add_avx2(ExactSumOf<Lanes> *sums, const Moving &moving,
+                                              const Wanted &wanted)
+{
+  add_to(sums, moving, wanted);
+}
+#endif
+
+void Temperature::add(int count, const int *ids, const Velocities &velocities)
+{
+  Moving moving = {{}, {}, velocities};    // a lane without a body has no mass
+  for (int lane = 0; lane < LANES; ++lane) {
+    const int ibody = ids[std::min(lane, count - 1)];
+    const Body &body = bodies.body_at(ibody);
+    const bool counts = lane < count && ibody < bodies.nowned();
+    Velocities &v = moving.velocities;
+    set(moving.mass, lane, counts ? body.rigid.mass : 0.0);
+    for (int k = 0; k < 3; ++k) {
+      set(moving.inertia[k], lane, counts ? body.rigid.inertia[k] : 0.0);
+      if (!counts) set(v.linear[k], lane, 0.0), set(v.omega_body[k], lane, 0.0);
+    }
+    if (counts && has_flow()) {
+      const auto flow = flow_at(ibody);
+      for (int k = 0; k < 3; ++k) set(v.linear[k], lane, get(v.linear[k], lane) - flow[k]);
+    }
+    for (int k = 0; body.off && k < 3; ++k) {
+      if (!has(ibody, TRANSLATION, k)) set(v.linear[k], lane, 0.0);
+      if (!has(ibody, ROTATION)) set(moving.inertia[k], lane, 0.0);
+    }
+  }
+#if defined(GEAR_QUAT_FOR_AVX2)
+  if (has_avx2()) return add_avx2(sums, moving, wanted);
+#endif
+  add_to(sums, moving, wanted);
 }
 
 bool Temperature::has_flow() const
@@ -232,29 +266,41 @@ std::array<double, 3> Temperature::flow_at(int ibody) const
 
 void Temperature::sum()
 {
-  sum_over_ranks(sums, world);
+  ExactSum all[SUMS];
+  for (int k = 0; k < SUMS; ++k)
+    for (int lane = 0; lane < LANES; ++lane) all[k].add_lane(sums[k], lane);
+  sum_over_ranks(all, world);
   double of_common = 0.0;
   for (int k = 0; k < 3; ++k) {
-    const double momentum = sums[MOMENTUM + k].value(momenta);
+    const double momentum = all[MOMENTUM + k].value();
     common[k] = constant[k] ? momentum / mass[k] : 0.0;
     of_common += momentum * common[k];
   }
-  for (const Part part : {TRANSLATION, ROTATION}) twice[part] = sums[part].value(energies);
-  twice[TRANSLATION] -= of_common;
-  if (twice[TRANSLATION] < ROUNDING_OF_ENERGY * of_common) twice[TRANSLATION] = 0.0;
   for (int k = 0; k < Upper::SIZE; ++k) {
     const int a = Upper::ROW[k], b = Upper::COLUMN[k];
-    tensor[k] = sums[TENSOR + k].value(energies) - mass[a] * common[a] * common[b];
+    tensor[k] = all[TENSOR + k].value() - mass[a] * common[a] * common[b];
   }
+  twice[ROTATION] = all[ROTATION].value();
+  twice[TRANSLATION] = wanted.tensor ? tensor.trace() : all[TRANSLATION].value() - of_common;
+  if (twice[TRANSLATION] < ROUNDING_OF_ENERGY * of_common) twice[TRANSLATION] = 0.0;
   begin();
 }
 
 void Temperature::sum_present()
 {
   begin();
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const BodyState &s = bodies.state_of(ibody);
-    add(ibody, s.velocity, s.omega_body);
+  for (int first = 0; first < bodies.nowned(); first += LANES) {
+    const int count = std::min(LANES, bodies.nowned() - first);
+    int ids[LANES];
+    Velocities velocities = {};
+    for (int lane = 0; lane < count; ++lane) {
+      const BodyState &state = bodies.state_of(ids[lane] = first + lane);
+      for (int k = 0; k < 3; ++k) {
+        set(velocities.linear[k], lane, state.velocity[k]);
+        set(velocities.omega_body[k], lane, state.omega_body[k]);
+      }
+    }
+    add(count, ids, velocities);
   }
   sum();
 }
@@ -302,20 +348,14 @@ void Temperature::fields(Fields &v)
    keyword isokinetic
 ------------------------------------------------------------------------- */
 
-void IsokineticConstraint::sum()
-{
-  constexpr size_t N = sizeof(KineticSums) / sizeof(double);
-  reduce(MPI_SUM, &here.force_power, &sums.force_power, N, world);
-  here = KineticSums();
-  alpha = GearQuat::multipliers(mode, sums);
-}
-
 void IsokineticConstraint::sum_present()
 {
-  here = KineticSums();
+  constexpr size_t N = sizeof(KineticSums) / sizeof(double);
+  KineticSums here;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     here.add(bodies.rigid_of(ibody), bodies.load_of(ibody), bodies.state_of(ibody));
-  sum();
+  reduce(MPI_SUM, &here.force_power, &sums.force_power, N, world);
+  alpha = GearQuat::multipliers(mode, sums);
 }
 
 void IsokineticConstraint::begin_run(bool anew)
@@ -348,7 +388,6 @@ void IsokineticConstraint::refuse_rest() const
 
 double IsokineticConstraint::end_passes()
 {
-  sum();
   if (counted != bodies.number()) {    // some were removed, with their energy
     target = sums;
     counted = bodies.number();

@@ -85,7 +85,8 @@ class Temperature : protected Pointers {
 
   void begin();
   double unit_of_energies() const;
-  void add(int ibody, const double *velocity, const double *omega_body);
+  /// Up to LANES bodies, of which owned ones count.
+  void add(int count, const int *ids, const Velocities &velocities);
   void sum();
   /// Of the present states.  Collective.
   void sum_present();
@@ -115,7 +116,6 @@ class Temperature : protected Pointers {
   const Bodies &bodies;
   const ThermostatWords &words;
   double start, stop;      ///< the target of a run
-  const int components;    ///< of the tensor: all with a pressure, otherwise none
 
   bool constant[3] = {}, stated = false;
   std::string outside;    ///< what exerts forces from outside, empty for nothing
@@ -123,9 +123,20 @@ class Temperature : protected Pointers {
   double count_of[3] = {}, mass[3] = {};
   int changes = 0;      ///< Bodies::changes() in count()
   bigint natoms = 0;    ///< all atoms then: others decide whether momentum counts
-  double energies = 1.0, momenta = 1.0;    ///< units of the sums
   enum { TENSOR = 2, MOMENTUM = TENSOR + Upper::SIZE, SUMS = MOMENTUM + 3 };
-  ExactSum sums[SUMS];    ///< twice the kinetic energies, the tensor, and P
+  ExactSumOf<Lanes> sums[SUMS];    ///< twice the kinetic energies, the tensor, and P
+  struct Wanted {
+    double energies, momenta;    ///< units of the sums
+    bool tensor;                 ///< instead of the energy of translation
+    bool constant[3];            ///< components of P
+  } wanted;
+  struct Moving {    ///< bodies side by side
+    Lanes mass, inertia[3];
+    Velocities velocities;
+  };
+
+  static void add_to(ExactSumOf<Lanes> *sums, const Moving &moving, const Wanted &wanted);
+  static void add_avx2(ExactSumOf<Lanes> *sums, const Moving &moving, const Wanted &wanted);
 
   std::string find_outside() const;
   void find_start();
@@ -150,14 +161,6 @@ class IsokineticConstraint : protected Pointers {
   /// Without histories, the present kinetic energy becomes the conserved one.  Ends the run if it
   /// is zero.  Collective.
   void begin_run(bool anew);
-  /// The contribution of an owned body.  torque_body: at the predicted pose, in all passes.
-  void add(int ibody, const double *velocity, const double *omega_body, const double *torque_body)
-  {
-    here.add(bodies.rigid_of(ibody), bodies.load_of(ibody).force, torque_body, velocity,
-             omega_body);
-  }
-  /// Sums the contributions over all ranks, and begins again.  Collective.
-  void sum();
   /// From the present states and loads.  Collective.
   void sum_present();
   /// After the last pass; returns the kinetic energy that scale() removes.  Collective.
@@ -174,7 +177,6 @@ class IsokineticConstraint : protected Pointers {
   Isokinetic mode;
   bool scales;    ///< momenta after a step
 
-  KineticSums here;    ///< of owned bodies, in a pass
   KineticSums sums, target;
   Multipliers alpha, factor;
   bigint counted = 0;    ///< number of bodies in the target

@@ -5,35 +5,12 @@
 
 #include "gear_quat_turn.h"
 
+#include "gear_quat_lanes.h"
+
 #include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS::GearQuat;
-
-/// A number for each of the bodies.  Functions are inline in variants for several processors.
-#if defined(__GNUC__)
-using Lanes = double __attribute__((vector_size(Turn::LANES * sizeof(double))));
-#define GEAR_QUAT_INLINE inline __attribute__((always_inline))
-static GEAR_QUAT_INLINE void set(Lanes &a, int lane, double value)
-{
-  a[lane] = value;
-}
-static GEAR_QUAT_INLINE double get(const Lanes &a, int lane)
-{
-  return a[lane];
-}
-#else
-using Lanes = double;
-#define GEAR_QUAT_INLINE inline
-static void set(Lanes &a, int, double value)
-{
-  a = value;
-}
-static double get(const Lanes &a, int)
-{
-  return a;
-}
-#endif
 
 struct Vector {
   Lanes x, y, z;
@@ -60,7 +37,7 @@ void Series::begin(int count, const RigidBody *const *bodies, const double *cons
   };
   Lanes inertia[3];
 #pragma GCC unroll 4
-  for (int lane = 0; lane < Turn::LANES; ++lane) {
+  for (int lane = 0; lane < LANES; ++lane) {
     const int body = body_in(lane);
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) set(inertia[i], lane, bodies[body]->inertia[i]);
@@ -82,7 +59,7 @@ void Series::begin(int count, const RigidBody *const *bodies, const double *cons
   for (int k = 0; k < terms; ++k) {
     Lanes x, y, z;
 #pragma GCC unroll 4
-    for (int lane = 0; lane < Turn::LANES; ++lane) {
+    for (int lane = 0; lane < LANES; ++lane) {
       const double *row = rows[body_in(lane)] + (k + 1) * stride;
       set(x, lane, row[0]), set(y, lane, row[1]), set(z, lane, row[2]);
     }
@@ -148,7 +125,7 @@ static GEAR_QUAT_INLINE void find_changes(const Orders &orders, int count,
   Lanes order_of = zero, p[4] = {zero, zero, zero, zero};
   int most = 0;
 #pragma GCC unroll 4
-  for (int lane = 0; lane < Turn::LANES; ++lane) {
+  for (int lane = 0; lane < LANES; ++lane) {
     const int order = orders.of(get(angle2, lane));
     set(order_of, lane, order);
     most = std::max(most, order);
@@ -170,10 +147,9 @@ static GEAR_QUAT_INLINE void find_changes(const Orders &orders, int count,
     for (int i = 0; i < 4; ++i) change[body][i] = get(turned[i], body);
 }
 
-#if defined(__GNUC__) && defined(__x86_64__)
-#define GEAR_QUAT_AVX2
+#if defined(GEAR_QUAT_FOR_AVX2)
 template <class Orders>
-__attribute__((target("avx2"))) static void
+GEAR_QUAT_FOR_AVX2 static void
 find_changes_avx2(const Orders &orders, int count, const RigidBody *const *bodies,
                   const double *const *rows, int stride, double (*change)[4])
 {
@@ -196,9 +172,8 @@ Turn::Turn(int terms, int least, double accuracy)
 void Turn::changes(int count, const RigidBody *const *bodies, const double *const *rows, int stride,
                    double (*change)[4]) const
 {
-#if defined(GEAR_QUAT_AVX2)
-  static const bool wide = __builtin_cpu_supports("avx2");
-  if (wide) return find_changes_avx2(orders, count, bodies, rows, stride, change);
+#if defined(GEAR_QUAT_FOR_AVX2)
+  if (has_avx2()) return find_changes_avx2(orders, count, bodies, rows, stride, change);
 #endif
   find_changes(orders, count, bodies, rows, stride, change);
 }

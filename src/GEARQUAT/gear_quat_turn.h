@@ -22,6 +22,7 @@
 #ifndef GEAR_QUAT_TURN_H
 #define GEAR_QUAT_TURN_H
 
+#include "gear_quat_lanes.h"
 #include "gear_quat_math.h"
 
 namespace LAMMPS_NS::GearQuat {
@@ -29,12 +30,6 @@ namespace LAMMPS_NS::GearQuat {
 class Turn {
  public:
   static constexpr int MOST = 24;    ///< order of the series, and terms of L
-#if defined(__GNUC__)
-  static constexpr int LANES = 4;    ///< bodies that turn side by side
-#else
-  static constexpr int LANES = 1;
-#endif
-
   /// The coefficients of h L(t) along the axes of space.
   using Momentum = double[MOST][3];
 

@@ -179,7 +179,7 @@ NOT_IN_A_FILE = {
     "temperature IsokineticConstraint": {
         COMMAND: "mode scales",
         OTHERS: "bodies",
-        STEP: "here sums alpha factor",
+        STEP: "sums alpha factor",
     },
     "tolerance Tolerance": {
         COMMAND: "control every_time",
@@ -189,18 +189,18 @@ NOT_IN_A_FILE = {
         STEP: "predicted errors speed tries failed fresh",
     },
     "temperature Temperature": {
-        COMMAND: "subtracted stop words components",
+        COMMAND: "subtracted stop words",
         OTHERS: "fix bodies",
         DERIVED: "line freedoms",
         RUN: "constant stated outside of_total count_of mass changes natoms",
-        STEP: "twice tensor common energies momenta sums",
+        STEP: "twice tensor common wanted sums",
     },
     "bath Bath": {
-        COMMAND: "words thermostats values_of_heat single_pass",
+        COMMAND: "words thermostats values_of_heat",
         OTHERS: "bodies",
         DERIVED: "made xi of_all",
         RUN: "at_nodes held",
-        STEP: "kept kept_heat coefficients_of_heat strong same_bodies pending",
+        STEP: "kept kept_heat coefficients_of_heat same_bodies",
         MESSAGES: "told warned",
     },
     "barostat Barostat": {

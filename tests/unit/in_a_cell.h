@@ -106,7 +106,6 @@ struct Host {
       box_chain{std::max(law.box_chain, 1)};
   ScalarHistory heat{};
   vector<vector<double>> rows{};
-  vector<Integrator::Pending> pending{};
   Upper matrix = Upper::one();
   Met met{};
   long steps = 0;
@@ -161,12 +160,12 @@ struct Host {
     matrix.inverse().times(load.force, found.force);
     return found;
   }
-  CellFriction friction(double xi) const { return friction(xi, xi); }
-  CellFriction friction(double xi, double of_turning) const
+  Friction friction(double xi) const { return friction(xi, xi); }
+  Friction friction(double xi, double of_turning) const
   {
     Friction alpha = Multipliers{xi, of_turning};
-    alpha.implicit = std::fabs(h * xi) > 1.0e-3;
-    return CellFriction(alpha, matrix, rate, law.b);
+    alpha.implicit = true;
+    return friction_in_cell(alpha, matrix, rate, law.b);
   }
 
   // the start: `pairs` of nodes, each in its own cell
@@ -294,7 +293,6 @@ struct Host {
         }
     }
     rows.assign(bodies.size(), vector<double>(scheme.size()));
-    pending.resize(bodies.size());
     search.seed_all(pairs);
     scaled = search.at_start;
     matrix = Upper::one();
@@ -312,35 +310,55 @@ struct Host {
       scaled[b] = integrator.body_state(bodies[b], rows[b].data());
     }
     met = met_in(states(), matrix);
-    for (size_t b = 0; b < bodies.size(); ++b)
-      pending[b] =
-          integrator.begin(met.loads[b], integrator.axes_of(rows[b].data()).data(), rows[b].data());
-    for (int pass = 0; pass < scheme.coupled_passes(); ++pass) correct();
+    for (int sum = 0; sum < (scheme.momentum() ? 1 : 3); ++sum) {
+      for (size_t b = 0; b < bodies.size(); ++b) {
+        vector<double> copy = rows[b];
+        integrator.correct(bodies[b], scaled_load(met.loads[b]), copy.data(),
+                           scheme.momentum() ? Friction() : present_friction());
+        scaled[b] = integrator.body_state(bodies[b], copy.data());
+      }
+      find_friction();
+    }
+    correct();
     finish();
   }
-  void correct()
+  void advance_chains(double twice, double of_turning, double of_box)
   {
     const int n = scheme.values();
     const double before = time() - h;
-    const double twice = law.turning > 0.0 ? kinetic().trace() : twice_kinetic();
     if (law.chain) { ASSERT_TRUE(chain.advance(law.target(before), twice, h, n)); }
     if (law.turning > 0.0) {
-      ASSERT_TRUE(turning.advance(law.turning_target(before), twice_turning(), h, n));
+      ASSERT_TRUE(turning.advance(law.turning_target(before), of_turning, h, n));
     }
-    if (law.box_chain) {
-      ASSERT_TRUE(box_chain.advance(law.box_target(before), law.twice_box(time(), rate), h, n));
-    }
-    cell.pass(law.drive(time(), matrix, kinetic(), met.virial),
-              law.box_chain ? box_chain.friction() : 0.0, h);
-    matrix = cell.matrix();
-    rate = cell.rate(h);
+    if (law.box_chain) { ASSERT_TRUE(box_chain.advance(law.box_target(before), of_box, h, n)); }
+  }
+  Friction present_friction() const
+  {
     const double xi = law.chain ? chain.friction() : 0.0;
-    const CellFriction now = friction(xi, law.turning > 0.0 ? turning.friction() : xi);
+    return friction(xi, law.turning > 0.0 ? turning.friction() : xi);
+  }
+  void correct()
+  {
     for (size_t b = 0; b < bodies.size(); ++b) {
-      integrator.correct_pass(bodies[b], scaled_load(met.loads[b]), now, rows[b].data(),
-                              pending[b]);
-      integrator.velocities_of_pass(bodies[b], rows[b].data(), pending[b], scaled[b].velocity,
-                                    scaled[b].omega_body);
+      integrator.correct(bodies[b], scaled_load(met.loads[b]), rows[b].data(), present_friction());
+      scaled[b] = integrator.body_state(bodies[b], rows[b].data());
+    }
+  }
+  void find_friction()
+  {
+    const double share = integrator.share(), free_turning = twice_turning();
+    const Upper free = kinetic(), to_scaled = matrix.inverse();
+    for (int round = 0; round < 6; ++round) {
+      const Friction now = present_friction();
+      const Upper left = (Upper::one() + now.damping.scaled(share)).inverse();
+      const Upper tensor = (matrix * left * to_scaled).congruent(free);
+      const double twice = now.implicit_torque(share) * now.implicit_torque(share) * free_turning;
+      advance_chains(law.turning > 0.0 ? tensor.trace() : tensor.trace() + twice, twice,
+                     law.twice_box(time(), rate));
+      cell.pass(law.drive(time(), matrix, tensor, met.virial),
+                law.box_chain ? box_chain.friction() : 0.0, h);
+      matrix = cell.matrix();
+      rate = cell.rate(h);
     }
   }
   void finish()
@@ -351,10 +369,6 @@ struct Host {
     cell.finish();
     matrix = cell.matrix();
     rate = cell.rate(h);
-    for (size_t b = 0; b < bodies.size(); ++b) {
-      integrator.finish(bodies[b], met.loads[b], rows[b].data(), pending[b]);
-      scaled[b] = integrator.body_state(bodies[b], rows[b].data());
-    }
     const Scheme of_heat = heat_scheme();
     heat.advance(CorrectorCoefficients(of_heat).c.data(), of_heat.values(), h,
                  law.heat_rate(time(), matrix, rate));

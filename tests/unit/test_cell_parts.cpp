@@ -55,19 +55,19 @@ TEST(Upper, IsTheAlgebraOfMatrices)
   EXPECT_NEAR(a.determinant(), 1.1 * 0.9 * 1.3, 1e-15);
 }
 
-TEST(CellFriction, ItsImplicitResidualIsTheFixedPointOfTheExplicitOne)
+TEST(FrictionInCell, ItsImplicitResidualIsTheFixedPointOfTheExplicitOne)
 {
   Friction alpha = Multipliers{0.8, 0.5};
   for (int k = 0; k < 3; ++k) alpha.common[k] = 0.2 * (k - 1.3);
   const double b[3] = {0.5, 0.1, -0.2}, mass = 1.7, share = 0.4;
-  const CellFriction friction(alpha, some_matrix(), some_rate(), b);
+  const Friction friction = friction_in_cell(alpha, some_matrix(), some_rate(), b);
   const double predicted[3] = {0.9, -0.6, 0.35}, met[3] = {0.3, 0.8, -1.1};
   double momentum[3], residual[3] = {}, solved[3];
   for (int round = 0; round < 200; ++round) {
     for (int i = 0; i < 3; ++i) momentum[i] = predicted[i] + share * residual[i];
-    for (int i = 0; i < 3; ++i) residual[i] = friction.force(i, met[i], momentum, mass);
+    friction.add_to(met, momentum, mass, residual);
   }
-  for (int i = 0; i < 3; ++i) solved[i] = friction.force(i, met[i], predicted, mass);
+  friction.add_to(met, predicted, mass, solved);
   friction.solve(share, solved);
   Check::holds({solved, solved + 3}, [&](const vector<double> &all) {
     return Check::largest_difference(all.data(), residual, 3) < 1e-13;
@@ -76,17 +76,19 @@ TEST(CellFriction, ItsImplicitResidualIsTheFixedPointOfTheExplicitOne)
   EXPECT_EQ(friction.torque(0.3, 0.7), 0.3 - 0.5 * 0.7);
 }
 
-TEST(CellFriction, ACommonMotionIsConstantInSpace)
+TEST(FrictionInCell, ACommonMotionIsConstantInSpace)
 {
   // V = M c with a constant V: c' = -M^-1 G M c, for any friction and b
   Friction alpha = Multipliers{0.8, 0.5};
   const double velocity[3] = {0.4, -0.7, 0.9}, b[3] = {0.5, 0.1, -0.2}, mass = 1.7;
   std::copy_n(velocity, 3, alpha.common);
-  const CellFriction friction(alpha, some_matrix(), some_rate(), b);
+  const Friction friction = friction_in_cell(alpha, some_matrix(), some_rate(), b);
+  const double none[3] = {};
   double c[3], p[3], rate[3], change[3], drift[3];
   some_matrix().inverse().times(velocity, c);
   for (int k = 0; k < 3; ++k) p[k] = mass * c[k];
-  for (int k = 0; k < 3; ++k) rate[k] = friction.force(k, 0.0, p, mass) / mass;
+  friction.add_to(none, p, mass, rate);
+  for (double &one : rate) one /= mass;
   some_matrix().times(rate, change);    // (M c)' = M c' + G M c
   some_rate().times(velocity, drift);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(change[k] + drift[k], 0.0, 1e-15);

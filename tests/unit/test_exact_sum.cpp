@@ -17,7 +17,7 @@ double sum(const vector<double> &terms, double scale, int parts = 1)
   for (size_t i = 0; i < terms.size(); ++i) part[i % parts].add(terms[i], scale);
   ExactSum all;
   for (const auto &one : part) all.add(one);
-  return all.value(scale);
+  return all.value();
 }
 
 /// Terms of very different sizes, like kinetic energies.
@@ -72,18 +72,15 @@ TEST(ExactSum, AScaleIsAPowerOfTwo)
   }
 }
 
-TEST(ExactSum, WhatIsNoNumberIsLarge)
+TEST(ExactSum, WhatIsNotFiniteShows)
 {
   const double infinite = std::numeric_limits<double>::infinity();
-  for (const double term : {infinite, infinite - infinite, 1.0e300})
-    EXPECT_GT(sum({1.0, term}, 1.0), 1.0e6);
+  for (const double term : {infinite, infinite - infinite})
+    for (const int parts : {1, 2}) EXPECT_FALSE(std::isfinite(sum({1.0, term, 2.0}, 1.0, parts)));
 }
 
-TEST(ExactSum, AnOverflowIsTheLargestValue)
+TEST(ExactSum, TermsFarAboveTheScaleHaveTheErrorsOfDoubles)
 {
-  const double infinite = std::numeric_limits<double>::infinity(), largest = 1048576.0;
-  for (const double term : {infinite, 1.0e300, -1.0e300, 0.9 * largest})
-    for (const int n : {2, 3, 4, 8})
-      for (const int parts : {1, 2}) EXPECT_EQ(sum(vector<double>(n, term), 1.0, parts), largest);
-  EXPECT_EQ(sum({0.9 * largest, -0.9 * largest, 0.25}, 1.0), 0.25);
+  for (const double term : {1.0e7, 1.0e20, 1.0e300})
+    EXPECT_NEAR(sum({term, 0.5 * term, -0.25 * term}, 1.0), 1.25 * term, 1.0e-15 * term);
 }

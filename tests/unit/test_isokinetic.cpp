@@ -126,37 +126,25 @@ struct Host {
       states[b] = integrator.body_state(bodies[b], rows[b].data());
   }
 
-  KineticSums pending_sums(const vector<Load> &loads, const vector<Integrator::Pending> &pending)
-  {
-    KineticSums s;
-    read_states();
-    for (size_t b = 0; b < bodies.size(); ++b)
-      s.add(bodies[b], loads[b].force, pending[b].torque_body, states[b].velocity,
-            states[b].omega_body);
-    return s;
-  }
-
   void step()
   {
-    vector<Integrator::Pending> pending;
     for (size_t b = 0; b < bodies.size(); ++b) integrator.predict(bodies[b], rows[b].data());
     read_states();
     const vector<Load> loads = loads_of(states);
+    const auto sums = [&] {
+      KineticSums s;
+      for (size_t b = 0; b < bodies.size(); ++b) s.add(bodies[b], loads[b], states[b]);
+      return s;
+    };
+    const Friction friction = multipliers(mode, sums());
     for (size_t b = 0; b < bodies.size(); ++b)
-      pending.push_back(
-          integrator.begin(loads[b], integrator.axes_of(rows[b].data()).data(), rows[b].data()));
-    for (int pass = 0; pass < scheme.passes; ++pass) {
-      const Multipliers alpha = multipliers(mode, pending_sums(loads, pending));
-      for (size_t b = 0; b < bodies.size(); ++b)
-        integrator.correct_pass(bodies[b], loads[b], Friction(alpha), rows[b].data(), pending[b]);
-    }
-    const KineticSums found = pending_sums(loads, pending);
+      integrator.correct(bodies[b], loads[b], rows[b].data(), friction);
+    read_states();
+    const KineticSums found = sums();
     heat.advance(CorrectorCoefficients(scheme).c.data(), scheme.values(), h, found.power());
     const Multipliers factor = scale_factors(mode, target, found);
-    for (size_t b = 0; b < bodies.size(); ++b) {
-      integrator.finish(bodies[b], loads[b], rows[b].data(), pending[b]);
-      if (rescale) integrator.scale_momenta(bodies[b], factor, rows[b].data());
-    }
+    for (size_t b = 0; b < bodies.size() && rescale; ++b)
+      integrator.scale_momenta(bodies[b], factor, rows[b].data());
     read_states();
   }
 
@@ -353,10 +341,7 @@ TEST(Isokinetic, AnAxisWithoutInertiaIsLeftAlone)
   const double axis = rows[Scheme::OMEGA + 2], across = rows[Scheme::OMEGA];
   for (int n = 0; n < 1000; ++n) {
     integrator.predict(rod, rows.data());
-    auto pending = integrator.begin(Load{}, integrator.axes_of(rows.data()).data(), rows.data());
-    for (int pass = 0; pass < scheme.passes; ++pass)
-      integrator.correct_pass(rod, Load{}, Friction(alpha), rows.data(), pending);
-    integrator.finish(rod, Load{}, rows.data(), pending);
+    integrator.correct(rod, Load{}, rows.data(), alpha);
   }
   integrator.scale_momenta(rod, grown, rows.data());
   EXPECT_NEAR(rows[Scheme::OMEGA + 2], axis, 1.0e-15);

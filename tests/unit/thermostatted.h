@@ -27,7 +27,6 @@ struct Host {
   Integrator integrator{scheme, h};
   Chain chain{std::max(length, 1)};
   vector<vector<double>> rows{};
-  vector<Integrator::Pending> pending{};
   long steps = 0;
 
   double time() const { return steps * h; }
@@ -127,7 +126,6 @@ struct Host {
       seed(scheme, bodies[b], collocation.series(search.work[b], found.pairs), h, h,
            rows[b].data());
     chain.seed(collocation.rate_at_start(search.twice), found.pairs, h, scheme.values() + 1);
-    pending.resize(bodies.size());
   }
 
   void step()
@@ -139,25 +137,31 @@ struct Host {
       states[b] = integrator.body_state(bodies[b], rows[b].data());
     }
     const vector<Load> loads = loads_of(states);
-    for (size_t b = 0; b < bodies.size(); ++b)
-      pending[b] =
-          integrator.begin(loads[b], integrator.axes_of(rows[b].data()).data(), rows[b].data());
-    for (int pass = 0; pass < scheme.coupled_passes(); ++pass) {
-      if (length) { ASSERT_TRUE(chain.advance(target_of(time() - h), twice_kinetic(), h, n)); }
-      const double xi = length ? chain.friction() : 0.0;
-      Friction friction = Multipliers{xi, xi};
-      friction.implicit = std::fabs(h * xi) > 1.0e-3;
+    double xi = length ? chain.friction() : 0.0;
+    const auto friction = [&] {
+      Friction found = Multipliers{xi, xi};
+      found.implicit = true;
+      return found;
+    };
+    for (int sum = 0; sum < (scheme.momentum() ? 1 : 3) && length; ++sum) {
       for (size_t b = 0; b < bodies.size(); ++b) {
-        integrator.correct_pass(bodies[b], loads[b], friction, rows[b].data(), pending[b]);
-        integrator.velocities_of_pass(bodies[b], rows[b].data(), pending[b], states[b].velocity,
-                                      states[b].omega_body);
+        vector<double> copy = rows[b];
+        integrator.correct(bodies[b], loads[b], copy.data(),
+                           scheme.momentum() ? Friction() : friction());
+        states[b] = integrator.body_state(bodies[b], copy.data());
+      }
+      const double free = twice_kinetic();
+      for (int round = 0; round < 6; ++round) {
+        const double left = 1.0 / (1.0 + integrator.share() * xi);
+        ASSERT_TRUE(chain.advance(target_of(time() - h), left * left * free, h, n));
+        xi = chain.friction();
       }
     }
-    if (length) chain.conclude();
     for (size_t b = 0; b < bodies.size(); ++b) {
-      integrator.finish(bodies[b], loads[b], rows[b].data(), pending[b]);
+      integrator.correct(bodies[b], loads[b], rows[b].data(), friction());
       states[b] = integrator.body_state(bodies[b], rows[b].data());
     }
+    if (length) chain.conclude();
   }
 
   /// Multiplies the step by this factor from now on.

@@ -1,0 +1,203 @@
+/* ----------------------------------------------------------------------
+   GEARQUAT - accurate motion of rigid bodies in LAMMPS
+   This software is distributed under the GNU General Public License, version 2.
+------------------------------------------------------------------------- */
+
+#include "gear_quat_integrator.h"
+
+using namespace LAMMPS_NS::GearQuat;
+
+namespace {
+
+constexpr int CENTER = Scheme::POSITION, QUATERNION = Scheme::SECOND_QUATERNION;
+constexpr int RATES = Scheme::SECOND_WIDTH;
+
+/// A lane without a body repeats the last one.
+GEAR_QUAT_INLINE int body_in(int lane, int count)
+{
+  return lane < count ? lane : count - 1;
+}
+
+/// N numbers of each body, the first at from(body).
+template <int N, class From> GEAR_QUAT_INLINE void load(int count, From from, Lanes *to)
+{
+#pragma GCC unroll 4
+  for (int lane = 0; lane < LANES; ++lane) {
+    const double *first = from(body_in(lane, count));
+#pragma GCC unroll 9
+    for (int i = 0; i < N; ++i) set(to[i], lane, first[i]);
+  }
+}
+
+template <int N, class To> GEAR_QUAT_INLINE void store(int count, const Lanes *from, To to)
+{
+  for (int body = 0; body < count; ++body) {
+    double *first = to(body);
+#pragma GCC unroll 9
+    for (int i = 0; i < N; ++i) first[i] = get(from[i], body);
+  }
+}
+
+/// As body_state().
+GEAR_QUAT_INLINE void states_of(const Block &block, double per_h)
+{
+  Lanes inertia[3], center[3], q[4], rates[6], axes[9], per_inertia[3], omega[3], velocity[3];
+  Lanes omega_space[3];
+  const auto row = [&block](int start) {
+    return [&block, start](int body) {
+      return block.rows[body] + start;
+    };
+  };
+  load<3>(
+      block.count,
+      [&](int body) {
+        return block.bodies[body]->inertia;
+      },
+      inertia);
+  load<3>(block.count, row(CENTER), center);
+  load<4>(block.count, row(QUATERNION), q);
+  load<6>(block.count, row(RATES), rates);
+  rotation_matrix(q, dot4(q, q), axes);
+  inverse_moments(inertia, per_inertia);
+  to_body(axes, rates + 3, omega);
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i) {
+    omega[i] = per_h * per_inertia[i] * omega[i];
+    velocity[i] = rates[i] * per_h;
+  }
+  to_space(axes, omega, omega_space);
+  store<3>(block.count, center, [&](int body) {
+    return block.states[body]->center;
+  });
+  store<4>(block.count, q, [&](int body) {
+    return block.states[body]->q;
+  });
+  store<3>(block.count, velocity, [&](int body) {
+    return block.states[body]->velocity;
+  });
+  store<3>(block.count, omega, [&](int body) {
+    return block.states[body]->omega_body;
+  });
+  store<9>(block.count, axes, [&](int body) {
+    return block.frames[body]->axes;
+  });
+  store<3>(block.count, omega_space, [&](int body) {
+    return block.frames[body]->omega_space;
+  });
+}
+
+GEAR_QUAT_INLINE void free_velocities_of(const MomentumStep &step, const Block &block,
+                                         Velocities &found)
+{
+  Predicted<Lanes> now;
+#pragma GCC unroll 4
+  for (int lane = 0; lane < LANES; ++lane) {
+    const int body = body_in(lane, block.count);
+    now.set_lane(lane, *block.bodies[body], *block.loads[body], block.rows[body]);
+  }
+  step.find_free_velocities(now, found.linear, found.omega_body);
+}
+
+GEAR_QUAT_INLINE void corrections_of(const MomentumStep &step, const Block &block,
+                                     const Friction &friction, Corrected<double> *found)
+{
+  Predicted<Lanes> now;
+  Corrected<Lanes> all = {};
+#pragma GCC unroll 4
+  for (int lane = 0; lane < LANES; ++lane) {
+    const int body = body_in(lane, block.count);
+    now.set_lane(lane, *block.bodies[body], *block.loads[body], block.rows[body]);
+  }
+  step.find_residual(now, friction, all.residual);
+  step.turn(now, all);
+  store<6>(block.count, all.residual, [&](int body) {
+    return found[body].residual;
+  });
+  store<4>(block.count, all.q, [&](int body) {
+    return found[body].q;
+  });
+  store<3>(block.count, &all.work, [&](int body) {
+    return &found[body].work;
+  });
+}
+
+#if defined(GEAR_QUAT_FOR_AVX2)
+GEAR_QUAT_FOR_AVX2 void states_avx2(const Block &block, double per_h)
+{
+  states_of(block, per_h);
+}
+
+GEAR_QUAT_FOR_AVX2 void free_velocities_avx2(const MomentumStep &step, const Block &block,
+                                             Velocities &found)
+{
+  free_velocities_of(step, block, found);
+}
+
+GEAR_QUAT_FOR_AVX2 void corrections_avx2(const MomentumStep &step, const Block &block,
+                                         const Friction &friction, Corrected<double> *found)
+{
+  corrections_of(step, block, friction, found);
+}
+#else
+constexpr bool has_avx2()
+{
+  return false;
+}
+constexpr auto states_avx2 = states_of;
+constexpr auto free_velocities_avx2 = free_velocities_of;
+constexpr auto corrections_avx2 = corrections_of;
+#endif
+
+}    // namespace
+
+void Integrator::find_states(const Block &block) const
+{
+  if (!scheme.momentum()) {
+    for (int body = 0; body < block.count; ++body)
+      body_state(*block.bodies[body], block.rows[body], *block.states[body], *block.frames[body]);
+    return;
+  }
+  if (has_avx2())
+    states_avx2(block, per_h);
+  else
+    states_of(block, per_h);
+}
+
+void Integrator::find_velocities(const Block &block, const Friction &friction,
+                                 Velocities &found) const
+{
+  if (scheme.momentum()) {
+    if (has_avx2())
+      free_velocities_avx2(momentum_step(), block, found);
+    else
+      free_velocities_of(momentum_step(), block, found);
+    return;
+  }
+  for (int body = 0; body < block.count; ++body) {
+    double rows[MAX_SIZE];
+    std::copy_n(block.rows[body], scheme.size(), rows);
+    correct(*block.bodies[body], *block.loads[body], rows, friction);
+    const BodyState state = body_state(*block.bodies[body], rows);
+    for (int i = 0; i < 3; ++i) {
+      set(found.linear[i], body, state.velocity[i]);
+      set(found.omega_body[i], body, state.omega_body[i]);
+    }
+  }
+}
+
+void Integrator::correct(const Block &block, const Friction &friction) const
+{
+  if (!scheme.momentum()) {
+    for (int body = 0; body < block.count; ++body)
+      *block.last[body] =
+          correct(*block.bodies[body], *block.loads[body], block.rows[body], friction);
+    return;
+  }
+  Corrected<double> found[LANES];
+  if (has_avx2())
+    corrections_avx2(momentum_step(), block, friction, found);
+  else
+    corrections_of(momentum_step(), block, friction, found);
+  for (int body = 0; body < block.count; ++body)
+    *block.last[body] = apply(found[body], block.rows[body]);
+}
