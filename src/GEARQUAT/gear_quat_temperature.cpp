@@ -41,8 +41,7 @@ Temperature::Temperature(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
     Pointers(lmp),
     subtracted(words.subtracted), fix(fix), bodies(bodies), words(words),
     start(words.damp > 0.0 ? words.start : pressure.temperature),
-    stop(words.damp > 0.0 ? words.stop : pressure.temperature),
-    wanted{1.0, 1.0, pressure.any(), {}}
+    stop(words.damp > 0.0 ? words.stop : pressure.temperature), wanted{1.0, 1.0, pressure.any(), {}}
 {
 }
 

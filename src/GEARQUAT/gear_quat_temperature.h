@@ -115,7 +115,7 @@ class Temperature : protected Pointers {
   const Fix *fix;
   const Bodies &bodies;
   const ThermostatWords &words;
-  double start, stop;      ///< the target of a run
+  double start, stop;    ///< the target of a run
 
   bool constant[3] = {}, stated = false;
   std::string outside;    ///< what exerts forces from outside, empty for nothing

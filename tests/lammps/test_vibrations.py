@@ -38,7 +38,7 @@ def condense(lmp, dt, run, words=COLD, ranks=1):
 
 def test_faster_vibrations_are_warned_of(lmp_wheel):
     """The end of a run warns once, with a step that is short enough."""
-    result = condense(lmp_wheel, 0.016, "run 3000\nrun 1000")
+    result = condense(lmp_wheel, 0.018, "run 3000\nrun 1000")
     ((edge, limit, step),) = TOLD.findall(result.words)
     assert float(BEGINS.search(result.stdout)[1]) < 0.2 and float(edge) > float(limit) == 0.4
     assert not TOLD.search(condense(lmp_wheel, step, "run 3000").words)
