@@ -28,6 +28,27 @@ def test_between_runs(lmp_tree, words):
     assert ends[0] == ends[1] == ends[2]
 
 
+@pytest.mark.parametrize("words", ["", "formulation second", TEMP, "langevin 0.4 0.4 1.0 4711", "tolerance 1e-9"])
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_reading_a_step_changes_nothing(lmp_tree, words, ranks):
+    """Only where something reads them do atoms get the states at the end of a step."""
+    looks = ["thermo 100", "thermo 1", "thermo 7", "fix look all ave/time 3 1 3 c_thermo_temp"]
+    runs = [f"{look}\nrun 100" for look in looks]
+    columns = {} if "temp" in words else dict(columns="")
+    ends, _ = ends_of(lmp_tree, runs, words, ranks, **columns)
+    assert len(set(ends)) == 1
+
+
+@pytest.mark.parametrize("words", ["", TEMP])
+def test_a_run_that_ends_before_its_last_step(lmp_tree, words):
+    """Atoms have the states of their bodies, which the next run does not take for changes by the user."""
+    early = "timer timeout 0:00:01 every 10\nrun 1000000000\ntimer timeout off\nrun 0"
+    columns = {} if "temp" in words else dict(columns="")
+    result = lmp_tree.succeed(cluster(words, every=1000000, run=early, **columns))
+    assert "atoms were changed" not in result.log
+    assert 10 < result.thermo[-1]["Step"][-1] < 1000000000
+
+
 @pytest.mark.parametrize("formulation, kind, ranks", [("momentum", "total", 2), ("second", "separate", 1), ("first", "total", 1)])
 def test_inside_a_ramp(lmp_tree, formulation, kind, ranks):
     runs = [

@@ -119,6 +119,88 @@ TEST(Turn, ABodyDoesNotDependOnItsNeighbor)
 
 // without torque the method is exact, for any step and number of values
 
+TEST(Momentum, BodiesSideBySideMoveAsEachAlone)
+{
+  const double h = 0.1;
+  for (const bool compensate : {false, true})
+    for (int count = 1; count <= LANES; ++count) {
+      Scheme scheme = momentum(7);
+      scheme.compensate = compensate;
+      const Integrator integrator(scheme, h);
+      RigidBody bodies[LANES];
+      std::vector<double> alone[LANES], together[LANES];
+      BodyState states[LANES];
+      BodyFrame frames[LANES];
+      Load loads[LANES];
+      Correction last[LANES];
+      Friction friction = Multipliers{0.3, 0.2};
+      friction.implicit = true;
+      friction.common[1] = 0.1;
+      Block block;
+      for (int n = 0; n < count; ++n) {
+        bodies[n] = TOP;
+        if (n == 1) bodies[n].inertia[2] = 0.0;
+        states[n] = top_state(0.3 * n);
+        loads[n] = {{0.1 * n, 0.2, -0.3}, {0.4, -0.1 * n, 0.2}};
+        alone[n].resize(scheme.size());
+        seed(scheme, bodies[n], local_series(bodies[n], states[n], loads[n], h), h, h,
+             alone[n].data());
+        together[n] = alone[n];
+        block.bodies[n] = &bodies[n];
+        block.rows[n] = together[n].data();
+        block.states[n] = &states[n];
+        block.frames[n] = &frames[n];
+        block.loads[n] = &loads[n];
+        block.last[n] = &last[n];
+        block.count = n + 1;
+      }
+      integrator.predict(block);
+      integrator.correct(block, friction);
+      integrator.find_states(block);
+      for (int n = 0; n < count; ++n) {
+        integrator.predict(bodies[n], alone[n].data());
+        const Correction one = integrator.correct(bodies[n], loads[n], alone[n].data(), friction);
+        const BodyState state = integrator.body_state(bodies[n], alone[n].data());
+        EXPECT_EQ(alone[n], together[n]) << n << " of " << count;
+        EXPECT_EQ(one.work, last[n].work);
+        EXPECT_EQ(one.position_error2, last[n].position_error2);
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(state.omega_body[i], states[n].omega_body[i]);
+      }
+    }
+}
+
+TEST(Momentum, AnImplicitFrictionDividesVelocities)
+{
+  // the kinetic energy after a correction follows from the velocities without friction
+  const double h = 0.1, xi = 0.7;
+  const Scheme scheme = momentum(7);
+  const Integrator integrator(scheme, h);
+  const Load load = {{0.3, 0.2, -0.5}, {0.4, -0.6, 0.2}};
+  std::vector<double> rows(scheme.size());
+  BodyState state = top_state(0.3);
+  seed(scheme, TOP, local_series(TOP, state, load, h), h, h, rows.data());
+  integrator.predict(TOP, rows.data());
+  Block block;
+  block.count = 1;
+  block.bodies[0] = &TOP;
+  block.rows[0] = rows.data();
+  block.loads[0] = &load;
+  Velocities free = {};
+  integrator.find_velocities(block, Friction(), free);
+  Friction friction = Multipliers{xi, xi};
+  friction.implicit = true;
+  integrator.correct(TOP, load, rows.data(), friction);
+  state = integrator.body_state(TOP, rows.data());
+  const double left = 1.0 / (1.0 + integrator.share() * xi);
+  double momentum_free[3], momentum[3];
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(state.velocity[i], left * get(free.linear[i], 0), 1.0e-15);
+    momentum_free[i] = left * TOP.inertia[i] * get(free.omega_body[i], 0);
+    momentum[i] = TOP.inertia[i] * state.omega_body[i];
+  }
+  EXPECT_NEAR(length(momentum), length(momentum_free), 1.0e-14);    // the axes have turned
+}
+
 TEST(Momentum, AFreeTopIsExact)
 {
   const Scene scene = free_top();
