@@ -410,7 +410,10 @@ class Integrator : public Kinematics {
   void correct_center(Second<CARRIES> history, const RigidBody &body, const Load &load,
                       const Friction &friction, double *rows, double *residual) const
   {
-    pass_of_center(body, load, friction, rows, residual);
+    if (friction.acts())
+      pass_of_center(body, load, friction, rows, residual);
+    else
+      position_residual(body, load, rows, residual);
     history.template correct<3>(rows, n, corrector.c.data(), Scheme::POSITION, residual);
   }
 
