@@ -187,7 +187,7 @@ FIXES = {
     "ehex": moves("1 0.1"),
     "hmc": moves("10 1234 1.0 rigid m", free=None),
     "tmd": moves("0.0 target 10 NULL", free=None),
-    "wall/piston": moves("zlo pos 0.5 vel 0.1", once=("change_box all boundary p p s",), free=None),
+    "wall/piston": moves("zlo pos 4.0 vel 0.1", once=("change_box all boundary p p s",), free=None),
     "neighbor/swap": moves(
         "5 5 1234 1.0 2.0 vv types 2 3",
         before=("compute vv all voronoi/atom neighbors yes",),
@@ -208,8 +208,8 @@ FIXES = {
     "thermal/conductivity": moves("5 z 4"),
     "viscosity": moves("5 x z 4"),
     "wall/flow": moves("x 1.0 1.0 1234 2 2.0 5.0", free=None),
-    "wall/reflect": moves("zlo 0.5 zhi 9.0", once=WALLS),
-    "wall/reflect/stochastic": moves("diffusive 1234 zlo 0.5 1.0 0 0 0", once=WALLS, free=CHANCE),
+    "wall/reflect": moves("zlo 4.0 zhi 9.0", once=WALLS),
+    "wall/reflect/stochastic": moves("diffusive 1234 zlo 2.5 1.0 0 0 0", once=WALLS, free=CHANCE),
     # --- integrates time as well ---
     "brownian": integrates("1.0 1234 gamma_t 1.0"),
     "brownian/sphere": integrates(
