@@ -152,7 +152,7 @@ constexpr auto corrections_avx2 = corrections_of;
 
 void Integrator::find_states(const Block &block) const
 {
-  if (!scheme.momentum()) {
+  if (!side_by_side(block)) {
     for (int body = 0; body < block.count; ++body)
       body_state(*block.bodies[body], block.rows[body], *block.states[body], *block.frames[body]);
     return;
@@ -187,7 +187,7 @@ void Integrator::find_velocities(const Block &block, const Friction &friction,
 
 void Integrator::correct(const Block &block, const Friction &friction) const
 {
-  if (!scheme.momentum()) {
+  if (!side_by_side(block)) {
     for (int body = 0; body < block.count; ++body)
       *block.last[body] =
           correct(*block.bodies[body], *block.loads[body], block.rows[body], friction);

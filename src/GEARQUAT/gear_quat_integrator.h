@@ -116,10 +116,16 @@ class Integrator : public Kinematics {
   Correction correct(const RigidBody &body, const Load &load, double *rows,
                      const Friction &friction = Friction()) const
   {
+    if (scheme.momentum()) {
+      const auto now = predicted(body, load, rows);
+      Corrected<double> found = {};
+      momentum_step().find_residual(now, friction, found.residual);
+      momentum_step().turn(now, found);
+      return apply(found, rows);
+    }
     Pending pending = begin(load, axes_of(rows).data(), rows);
-    const int passes = scheme.momentum() ? 1 : scheme.passes;
-    for (int k = 0; k < passes; ++k) correct_pass(body, load, friction, rows, pending, k);
-    return finish(body, load, rows, pending);
+    for (int k = 0; k < scheme.passes; ++k) correct_pass(body, load, friction, rows, pending, k);
+    return finish(load, rows, pending);
   }
 
   /// A rotation about an axis without inertia does not change: it has no momentum.
@@ -177,7 +183,7 @@ class Integrator : public Kinematics {
   struct Residual {    ///< summed over the passes
     double all[7] = {};
     double *x() { return all; }
-    double *q() { return all + 3; }    ///< formulation momentum: of L, three components
+    double *q() { return all + 3; }
     const double *x() const { return all; }
     const double *q() const { return all + 3; }
   };
@@ -197,9 +203,10 @@ class Integrator : public Kinematics {
     return pending;
   }
 
-  /// earlier: passes without friction.
+  // formulations first and second; earlier: passes before
+
   void correct_pass(const RigidBody &body, const Load &load, const Friction &friction, double *rows,
-                    Pending &pending, int earlier = 0) const
+                    Pending &pending, int earlier) const
   {
     with_history([&](auto history) {
       pass(history, body, load, friction, rows, pending, earlier);
@@ -207,15 +214,8 @@ class Integrator : public Kinematics {
   }
 
   /// Projects |q| = 1 and, in the second-order form, q.qdot = 0.
-  Correction finish(const RigidBody &body, const Load &load, double *rows,
-                    const Pending &pending) const
+  Correction finish(const Load &load, double *rows, const Pending &pending) const
   {
-    if (scheme.momentum()) {
-      Corrected<double> found;
-      std::copy_n(pending.total.all, 6, found.residual);
-      momentum_step().turn(predicted(body, load, rows), found);
-      return apply(found, rows);
-    }
     with_history([&](auto history) {
       finish_passes(history, rows, pending);
     });
@@ -365,6 +365,8 @@ class Integrator : public Kinematics {
 
   // the momentum formulation
 
+  /// One body alone needs fewer operations with numbers of type double.
+  bool side_by_side(const Block &block) const { return scheme.momentum() && block.count > 1; }
   MomentumStep momentum_step() const { return {corrector, h}; }
 
   static Predicted<double> predicted(const RigidBody &body, const Load &load, const double *rows)
@@ -387,13 +389,6 @@ class Integrator : public Kinematics {
     history.template add<3>(rows, n, 0, Scheme::POSITION, place);
     history.template add<4>(rows, n, 0, Scheme::SECOND_QUATERNION, found.q);
     history.template correct<6, 1>(rows, n, corrector.c.data(), 0, found.residual);
-  }
-
-  template <int CARRIES>
-  void pass(Momenta<CARRIES>, const RigidBody &body, const Load &load, const Friction &friction,
-            double *rows, Pending &pending, int) const
-  {
-    momentum_step().find_residual(predicted(body, load, rows), friction, pending.total.all);
   }
 
   /// Positions (Eq. 17): forces are constant, so one pass is sufficient.

@@ -94,25 +94,22 @@ class MomentumStep {
  public:
   MomentumStep(const CorrectorCoefficients &corrector, double h) : corrector(corrector), h(h) {}
 
-  /// The residual with a friction.  residual: of an earlier pass, or zero, and then of this one.
+  /// The residual with a friction.
   template <class T>
   GEAR_QUAT_INLINE void find_residual(const Predicted<T> &now, const Friction &friction,
                                       T *residual) const
   {
     const double half_h2 = 0.5 * h * h, per_h = 1.0 / h, share = 0.5 * h * corrector.c[1];
-    const double earlier = friction.implicit ? 0.0 : corrector.c[1];
-    T rates[6], p[3], damped[3];
-#pragma GCC unroll 6
-    for (int i = 0; i < 6; ++i) rates[i] = now.rates[i] + earlier * residual[i];
+    T p[3], damped[3];
 #pragma GCC unroll 3
-    for (int i = 0; i < 3; ++i) p[i] = now.mass * (rates[i] * per_h);
+    for (int i = 0; i < 3; ++i) p[i] = now.mass * (now.rates[i] * per_h);
     friction.add_to(now.force, p, now.mass, damped);
     const T half_h2_per_mass = half_h2 / now.mass;
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {
       residual[i] = half_h2_per_mass * damped[i] - now.seconds[i];
-      residual[3 + i] =
-          half_h2 * friction.torque(now.torque_space[i], per_h * rates[3 + i]) - now.seconds[3 + i];
+      residual[3 + i] = half_h2 * friction.torque(now.torque_space[i], per_h * now.rates[3 + i]) -
+          now.seconds[3 + i];
     }
     if (!friction.implicit) return;
     friction.solve(share, residual);
