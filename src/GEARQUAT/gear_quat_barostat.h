@@ -19,7 +19,7 @@
      S' = V sum (P_ab - P delta_ab) G_ab - V P' - sum (W'/2) G_ab^2,   P = sum P_aa/d
 
    is constant.  The box (gear_quat_box.h) moves as the bodies do: a step predicts the box, LAMMPS
-   evaluates the forces in the predicted box, and every pass of the corrector corrects the box.  Atoms
+   evaluates the forces in the predicted box, and the sums over the bodies correct the box.  Atoms
    in no body, which do not move by themselves, keep their places relative to the box.
 
    The virial of the centers of mass of all bodies is (Eq. P6)

@@ -30,7 +30,7 @@
    is a recursion.  It is summed in sub-steps as short as its last terms require.
 
    For the start, the host calls flow() for the friction at another time, and seed() with the 2K
-   there.  Once a step it calls advance() in every pass, with the current 2K, and then conclude().
+   there.  In a step it calls advance() with each estimate of 2K, and then conclude().
    When degrees of freedom or velocities change, it calls join(). */
 
 #ifndef GEAR_QUAT_CHAIN_H
