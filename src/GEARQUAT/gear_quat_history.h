@@ -255,6 +255,24 @@ class ScalarHistory {
 
 /* ---------------------------------------------------------------------- */
 
+/// Formulation momentum: the velocities and the frame of a body, or of several side by side.  rates:
+/// h x' and h L, along the axes of space.
+template <class T>
+GEAR_QUAT_INLINE void velocities_of_rows(const T *inertia, const T *rates, const T *q, double per_h,
+                                         T *velocity, T *omega_body, T *axes, T *omega_space)
+{
+  T per_inertia[3], along[3];
+  rotation_matrix(q, dot4(q, q), axes);
+  inverse_moments(inertia, per_inertia);
+  to_body(axes, rates + 3, along);
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i) {
+    velocity[i] = rates[i] * per_h;
+    omega_body[i] = per_h * per_inertia[i] * along[i];
+  }
+  to_space(axes, omega_body, omega_space);
+}
+
 class Kinematics {
  public:
   /// h: the time step, not zero.
@@ -281,12 +299,12 @@ class Kinematics {
   void body_state(const RigidBody &body, const double *rows, BodyState &state,
                   BodyFrame &frame) const
   {
-    if (scheme.momentum())
-      find_state<Formulation::MOMENTUM>(body, rows, state, frame);
-    else if (scheme.first())
-      find_state<Formulation::FIRST>(body, rows, state, frame);
-    else
-      find_state<Formulation::SECOND>(body, rows, state, frame);
+    if (scheme.first()) return find_state<Formulation::FIRST>(body, rows, state, frame);
+    if (!scheme.momentum()) return find_state<Formulation::SECOND>(body, rows, state, frame);
+    copy(rows + Scheme::POSITION, 3, state.center);
+    copy(rows + Scheme::SECOND_QUATERNION, 4, state.q);
+    velocities_of_rows(body.inertia, rows + Scheme::SECOND_WIDTH, state.q, per_h, state.velocity,
+                       state.omega_body, frame.axes, frame.omega_space);
   }
 
   /// Position and velocity alone.
@@ -372,17 +390,6 @@ class Kinematics {
     for (int i = 0; i < n; ++i) to[i] = from[i];
   }
 
-  /// omega = I^-1 A L; momentum: h L along the axes of space.
-  void omega_of(const RigidBody &body, const double *axes, const double *momentum,
-                double *omega_body) const
-  {
-    double per_inertia[3], along[3];
-    inverse_moments(body.inertia, per_inertia);
-    to_body(axes, momentum, along);
-#pragma GCC unroll 3
-    for (int i = 0; i < 3; ++i) omega_body[i] = per_h * per_inertia[i] * along[i];
-  }
-
  private:
   /// The last row of velocity Verlet, of a center.
   void set_acceleration(const RigidBody &body, const Load &load, double *rows) const
@@ -426,10 +433,8 @@ class Kinematics {
       for (int i = 0; i < 3; ++i) velocity[i] = rows[Scheme::MOMENTUM + i] / body.mass;
       copy(rows + Scheme::OMEGA, 3, omega_body);
     } else {
-      for (int i = 0; i < 3; ++i) velocity[i] = rates[Scheme::POSITION + i] * per_h;
-    }
-    if (FORM == Formulation::SECOND) {
       double qdot[4];
+      for (int i = 0; i < 3; ++i) velocity[i] = rates[Scheme::POSITION + i] * per_h;
       for (int i = 0; i < 4; ++i) qdot[i] = rates[QUATERNION + i] * per_h;
       angular_velocity(q, norm2, qdot, omega_body);
     }
@@ -437,8 +442,6 @@ class Kinematics {
     copy(q, 4, state.q);
     copy(velocity, 3, state.velocity);
     rotation_matrix(q, norm2, frame.axes);
-    if (FORM == Formulation::MOMENTUM)
-      omega_of(body, frame.axes, rates + Scheme::ANGULAR_MOMENTUM, omega_body);
     copy(omega_body, 3, state.omega_body);
     to_space(frame.axes, omega_body, frame.omega_space);
   }

@@ -41,8 +41,7 @@ template <int N, class To> GEAR_QUAT_INLINE void store(int count, const Lanes *f
 /// As body_state().
 GEAR_QUAT_INLINE void states_of(const Block &block, double per_h)
 {
-  Lanes inertia[3], center[3], q[4], rates[6], axes[9], per_inertia[3], omega[3], velocity[3];
-  Lanes omega_space[3];
+  Lanes inertia[3], center[3], q[4], rates[6], velocity[3], omega[3], axes[9], omega_space[3];
   const auto row = [&block](int start) {
     return [&block, start](int body) {
       return block.rows[body] + start;
@@ -57,15 +56,7 @@ GEAR_QUAT_INLINE void states_of(const Block &block, double per_h)
   load<3>(block.count, row(CENTER), center);
   load<4>(block.count, row(QUATERNION), q);
   load<6>(block.count, row(RATES), rates);
-  rotation_matrix(q, dot4(q, q), axes);
-  inverse_moments(inertia, per_inertia);
-  to_body(axes, rates + 3, omega);
-#pragma GCC unroll 3
-  for (int i = 0; i < 3; ++i) {
-    omega[i] = per_h * per_inertia[i] * omega[i];
-    velocity[i] = rates[i] * per_h;
-  }
-  to_space(axes, omega, omega_space);
+  velocities_of_rows(inertia, rates, q, per_h, velocity, omega, axes, omega_space);
   store<3>(block.count, center, [&](int body) {
     return block.states[body]->center;
   });
@@ -86,8 +77,7 @@ GEAR_QUAT_INLINE void states_of(const Block &block, double per_h)
   });
 }
 
-GEAR_QUAT_INLINE void free_velocities_of(const MomentumStep &step, const Block &block,
-                                         Velocities &found)
+GEAR_QUAT_INLINE Predicted<Lanes> predicted(const Block &block)
 {
   Predicted<Lanes> now;
 #pragma GCC unroll 4
@@ -95,19 +85,20 @@ GEAR_QUAT_INLINE void free_velocities_of(const MomentumStep &step, const Block &
     const int body = body_in(lane, block.count);
     now.set_lane(lane, *block.bodies[body], *block.loads[body], block.rows[body]);
   }
-  step.find_free_velocities(now, found.linear, found.omega_body);
+  return now;
+}
+
+GEAR_QUAT_INLINE void free_velocities_of(const MomentumStep &step, const Block &block,
+                                         Velocities &found)
+{
+  step.find_free_velocities(predicted(block), found.linear, found.omega_body);
 }
 
 GEAR_QUAT_INLINE void corrections_of(const MomentumStep &step, const Block &block,
                                      const Friction &friction, Corrected<double> *found)
 {
-  Predicted<Lanes> now;
+  const Predicted<Lanes> now = predicted(block);
   Corrected<Lanes> all = {};
-#pragma GCC unroll 4
-  for (int lane = 0; lane < LANES; ++lane) {
-    const int body = body_in(lane, block.count);
-    now.set_lane(lane, *block.bodies[body], *block.loads[body], block.rows[body]);
-  }
   step.find_residual(now, friction, all.residual);
   step.turn(now, all);
   store<6>(block.count, all.residual, [&](int body) {
@@ -121,7 +112,6 @@ GEAR_QUAT_INLINE void corrections_of(const MomentumStep &step, const Block &bloc
   });
 }
 
-#if defined(GEAR_QUAT_FOR_AVX2)
 GEAR_QUAT_FOR_AVX2 void states_avx2(const Block &block, double per_h)
 {
   states_of(block, per_h);
@@ -138,16 +128,6 @@ GEAR_QUAT_FOR_AVX2 void corrections_avx2(const MomentumStep &step, const Block &
 {
   corrections_of(step, block, friction, found);
 }
-#else
-constexpr bool has_avx2()
-{
-  return false;
-}
-constexpr auto states_avx2 = states_of;
-constexpr auto free_velocities_avx2 = free_velocities_of;
-constexpr auto corrections_avx2 = corrections_of;
-#endif
-
 }    // namespace
 
 void Integrator::find_states(const Block &block) const

@@ -88,7 +88,7 @@ class Integrator : public Kinematics {
   /// xi divides them by 1 + share() * xi, up to the change of the orientation by the correction.
   /// Other formulations: the velocities after a correction with this friction, and share() is 0.
   void find_velocities(const Block &block, const Friction &friction, Velocities &found) const;
-  double share() const { return scheme.momentum() ? 0.5 * h * corrector.c[1] : 0.0; }
+  double share() const { return scheme.momentum() ? momentum_step().share() : 0.0; }
   /// Corrects predicted histories with the loads at the predicted poses, all with this friction.
   void correct(const Block &block, const Friction &friction) const;
 

@@ -7,8 +7,9 @@
    an element for each of them.  The operations of a body are the same as with numbers of type
    double, and so are the results, in registers of any length.
 
-   A function in variants for several processors has its body in a function that is marked
-   GEAR_QUAT_INLINE, and a copy of it for each of them that calls nothing (GEAR_QUAT_FOR_AVX2). */
+   A function in two variants has its body in a function that is marked GEAR_QUAT_INLINE.  Another
+   function, marked GEAR_QUAT_FOR_AVX2, contains a copy of it for processors of which has_avx2() is
+   true. */
 
 #ifndef GEAR_QUAT_LANES_H
 #define GEAR_QUAT_LANES_H
@@ -49,6 +50,12 @@ inline bool has_avx2()
 {
   static const bool found = __builtin_cpu_supports("avx2");
   return found;
+}
+#else
+#define GEAR_QUAT_FOR_AVX2
+constexpr bool has_avx2()
+{
+  return false;
 }
 #endif
 

@@ -94,12 +94,15 @@ class MomentumStep {
  public:
   MomentumStep(const CorrectorCoefficients &corrector, double h) : corrector(corrector), h(h) {}
 
+  /// A residual r changes a velocity by share() r.
+  double share() const { return 0.5 * h * corrector.c[1]; }
+
   /// The residual with a friction.
   template <class T>
   GEAR_QUAT_INLINE void find_residual(const Predicted<T> &now, const Friction &friction,
                                       T *residual) const
   {
-    const double half_h2 = 0.5 * h * h, per_h = 1.0 / h, share = 0.5 * h * corrector.c[1];
+    const double half_h2 = 0.5 * h * h, per_h = 1.0 / h;
     T p[3], damped[3];
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) p[i] = now.mass * (now.rates[i] * per_h);
@@ -112,8 +115,8 @@ class MomentumStep {
           now.seconds[3 + i];
     }
     if (!friction.implicit) return;
-    friction.solve(share, residual);
-    const double part = friction.implicit_torque(share);
+    friction.solve(share(), residual);
+    const double part = friction.implicit_torque(share());
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) residual[3 + i] *= part;
   }

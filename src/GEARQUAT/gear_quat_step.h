@@ -241,7 +241,7 @@ class Step : protected Pointers {
   void correct(double **f, bool states);
   void sum(const std::vector<int> &list, const Way &way);
   template <bool ARE_POINTS> void correct(const std::vector<int> &list, const Way &way, double **f);
-  bool is_read_at_end() const;
+  bool has_to_place() const;
   /// After a step the fix reads its states itself.
   bool reads_states() const { return tolerance || bath.reads_states() || scheme().is_verlet(); }
   void place_correction();

@@ -209,13 +209,11 @@ GEAR_QUAT_INLINE void Temperature::add_to(ExactSumOf<Lanes> *sums, const Moving 
                          wanted.energies);
 }
 
-#if defined(GEAR_QUAT_FOR_AVX2)
 GEAR_QUAT_FOR_AVX2 void Temperature::add_avx2(ExactSumOf<Lanes> *sums, const Moving &moving,
                                               const Wanted &wanted)
 {
   add_to(sums, moving, wanted);
 }
-#endif
 
 void Temperature::add(int count, const int *ids, const Velocities &velocities)
 {
@@ -239,10 +237,7 @@ void Temperature::add(int count, const int *ids, const Velocities &velocities)
       if (!has(ibody, ROTATION)) set(moving.inertia[k], lane, 0.0);
     }
   }
-#if defined(GEAR_QUAT_FOR_AVX2)
-  if (has_avx2()) return add_avx2(sums, moving, wanted);
-#endif
-  add_to(sums, moving, wanted);
+  has_avx2() ? add_avx2(sums, moving, wanted) : add_to(sums, moving, wanted);
 }
 
 bool Temperature::has_flow() const

@@ -147,7 +147,6 @@ static GEAR_QUAT_INLINE void find_changes(const Orders &orders, int count,
     for (int i = 0; i < 4; ++i) change[body][i] = get(turned[i], body);
 }
 
-#if defined(GEAR_QUAT_FOR_AVX2)
 template <class Orders>
 GEAR_QUAT_FOR_AVX2 static void
 find_changes_avx2(const Orders &orders, int count, const RigidBody *const *bodies,
@@ -155,7 +154,6 @@ find_changes_avx2(const Orders &orders, int count, const RigidBody *const *bodie
 {
   find_changes(orders, count, bodies, rows, stride, change);
 }
-#endif
 
 /// The series of a free asymmetric top has a finite radius of convergence: its error is about
 /// (angle/4)^(order + 1).
@@ -172,10 +170,10 @@ Turn::Turn(int terms, int least, double accuracy)
 void Turn::changes(int count, const RigidBody *const *bodies, const double *const *rows, int stride,
                    double (*change)[4]) const
 {
-#if defined(GEAR_QUAT_FOR_AVX2)
-  if (has_avx2()) return find_changes_avx2(orders, count, bodies, rows, stride, change);
-#endif
-  find_changes(orders, count, bodies, rows, stride, change);
+  if (has_avx2())
+    find_changes_avx2(orders, count, bodies, rows, stride, change);
+  else
+    find_changes(orders, count, bodies, rows, stride, change);
 }
 
 /// Rows for changes(), with a stride of 4.

@@ -5,28 +5,11 @@ import re
 from unittest import mock
 
 from lammps_gearquat import keywords
+from support.scenes import TWO_MOLECULES
 
 from . import tokens
 
-SETUP = """
-units lj
-atom_style molecular
-atom_modify map array
-region box block -10 10 -10 10 -10 10
-create_box 1 box
-create_atoms 1 single 0.0 0.0 0.0
-create_atoms 1 single 1.0 0.0 0.0
-create_atoms 1 single 0.0 1.2 0.1
-create_atoms 1 single 5.0 5.0 5.0
-create_atoms 1 single 6.0 5.0 5.0
-create_atoms 1 single 5.0 6.2 5.1
-mass 1 1.0
-set atom 1*3 mol 1
-set atom 4*6 mol 2
-velocity all create 1.0 4711 loop geom mom no
-pair_style zero 2.0
-pair_coeff * *
-timestep 0.01
+SETUP = TWO_MOLECULES.partition("{before}")[0].format(boundary="p p p") + """
 thermo_modify norm no
 group left id 1 2 3
 group right id 4 5 6
