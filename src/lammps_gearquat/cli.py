@@ -47,7 +47,7 @@ def _apart(command, module):
     ],
     context_settings=HELP,
     epilog=epilog(
-        "gearquat cost examples/water/in.water --var method rigid --budget 30",
+        "gearquat cost examples/water/in.water --var forces plain --budget 30",
     ),
 )
 @cloup.version_option(package_name="lammps-gearquat", message="%(version)s")

@@ -169,13 +169,13 @@ def test_formulation_momentum_has_neither_passes_nor_projections(lmp_wheel, word
 
 def test_jumping_forces_are_told(lmp_wheel, examples):
     """A plain cutoff: a polynomial does not represent a jump, and the start reports its size."""
-    deck = whole_deck(examples / "water" / "in.water")
+    deck = (examples / "water" / "in.water").read_text()
     for name in ("data.water", "forces."):
         deck = deck.replace(name, str(examples / "water" / name))
     orders = {}
     for forces in ("smooth", "plain"):
         result = lmp_wheel.succeed(
-            deck, dict(forces=forces, steps=1, every=1, values=12, corrector="gear", dt=1.0)
+            deck, dict(forces=forces, steps=1, every=1, fix="gear/quat molecule values 12 corrector gear", dt=1.0)
         )
         orders[forces] = int(re.search(r"start of order (\d+) from", result.output)[1])
         jump = re.search(r"because forces change suddenly, by (\S+) of the motion", result.output)

@@ -287,7 +287,7 @@ def test_water_with_a_plain_cutoff_is_not_lost(lmp_wheel):
     data, pair = EXAMPLES / "water" / "data.water", (EXAMPLES / "water" / "forces.plain").read_text()
 
     def deck(fix):
-        return water(data, fix, dt=2.0, steps=200, thermo=10, pair=pair)
+        return water(data, fix, dt=2.0, steps=200, thermo=10, pair=pair, before="velocity all create 300.0 4711")
 
     hot = {}
     for style in ("rigid/nve/small molecule", *(f"gear/quat molecule formulation {f}" for f in FORMULATIONS)):

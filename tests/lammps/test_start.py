@@ -160,6 +160,7 @@ read_data {data}
 {pairs}
 neighbor 1.0 bin
 neigh_modify every 1 delay 0 check yes exclude molecule/intra all
+velocity all create 300.0 4711
 fix move all gear/quat molecule {fix}
 timestep {dt}
 dump poses all custom {steps} poses.dump id xu yu zu
@@ -170,7 +171,7 @@ run {steps}
 
 @pytest.fixture(scope="module")
 def liquid(examples):
-    """500 SPC/E for 20 fs: the start's order, its evaluations, its message and the last positions."""
+    """216 SPC/E for 20 fs: the start's order, its evaluations, its message and the last positions."""
 
     def run(lmp, name, dt, fix="values 9"):
         pairs = SPCE.format(MIXTURES[name][0]) + MIXTURES[name][1]

@@ -39,6 +39,7 @@ WATER = """
 units real
 atom_style full
 read_data {examples}/water/data.water
+velocity all create 300.0 4711 loop geom
 pair_style lj/charmm/coul/long 7 8
 pair_coeff 1 1 0.1553 3.166
 pair_coeff 2 2 0 1

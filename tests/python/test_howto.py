@@ -49,7 +49,7 @@ def test_commands_of_no_page_are_left_out():
     pages = {page.stem for page in (ROOT / "doc" / "howto").glob("*.md")}
     with_commands = {page for page in pages if command_blocks(page)}
     mine = Path(__file__).read_text()
-    assert with_commands == set(re.findall(r'pasted\("(\w+)"\)', mine)) and len(with_commands) == 5
+    assert with_commands == set(re.findall(r'pasted\("(\w+)"\)', mine)) and len(with_commands) == 6
 
 
 # --- from fix rigid -------------------------------------------------------------------------------
@@ -209,9 +209,11 @@ def shake_scripts():
     return script, script.replace(taken, added)
 
 
-def test_shake_becomes_rigid_bodies(lmp_wheel):
+def test_shake_becomes_rigid_bodies(pasted, lmp_wheel):
     """For the same positions, energy and degrees of freedom are the same; the trajectories begin alike."""
-    shutil.copy(ROOT / "examples/water_npt/data.water", lmp_wheel.folder)
+    for name in ("in.equilibrate", "molecule.bonded"):
+        shutil.copy(ROOT / "examples" / "water" / name, lmp_wheel.folder)
+    pasted("from_shake")
     before, after = (table(passes(lmp_wheel, script)) for script in shake_scripts())
     _, temperature, _, density, energy, _ = range(6)
     assert apart(after[0, energy], before[0, energy]) < 1e-7

@@ -14,7 +14,7 @@ STYLES = {OURS: "fix move all gear/quat molecule", RIGID: "fix move all rigid/nv
 #: largest time in the fix relative to fix rigid/nve/small
 MOST_TIME = 1.0
 #: ranks; time step in fs; molecules of examples/water/data.water, before they are replicated
-RANKS, DT, MOLECULES = (1, 2), 0.5, 500
+RANKS, DT, MOLECULES = (1, 2), 0.5, 216
 IN_TURN = Path(__file__).with_name("in.timing")
 
 
@@ -22,7 +22,7 @@ IN_TURN = Path(__file__).with_name("in.timing")
 class Plan:
     """Sizes of the runs: ``cells``: copies of the box along x, y, z; timed ``steps``; ``rounds``."""
 
-    cells: tuple = (4, 2, 2)
+    cells: tuple = (4, 3, 3)
     steps: int = 40
     rounds: int = 5
 

@@ -1,6 +1,6 @@
 """Constant pressure: the barostat of the fix compared with fix rigid/npt/small, and with fix shake and fix npt.
 
-Water with PPPM (``examples/water_npt``) shows the drift of the conserved energy.  A crystal of
+Water with PPPM (``in.water``) shows the drift of the conserved energy.  A crystal of
 dumbbells under a different pressure along each axis (``in.crystal``) shows whether each component reaches its target.
 """
 
@@ -11,14 +11,14 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import sem
 
-from benchmarks.engine import EXAMPLES, Finding, Measurement, Study, Table
+from benchmarks.engine import Finding, Measurement, Study, Table
 from benchmarks.engine.statistics import Mean, allowed, mean_of_series, slope
 from gearquat_analysis.tables import with_error
 
 OURS, RIGID, SHAKE = "gear", "rigid", "shake"
 SHEARED = "sheared"
 METHODS = {OURS: "`fix gear/quat`", RIGID: "`fix rigid/npt/small`", SHAKE: "`fix shake` and `fix npt`"}
-WATER, CRYSTAL = EXAMPLES / "water_npt" / "in.water_npt", Path(__file__).parent / "in.crystal"
+WATER, CRYSTAL = (Path(__file__).parent / name for name in ("in.water", "in.crystal"))
 MOLECULES, TEMPERATURE, BOLTZMANN = 216, 300.0, 0.0019872067
 FREEDOMS = 6 * MOLECULES - 3
 DUMBBELLS_KT, TARGETS = 0.5, (0.5, 0.5, 1.5)

@@ -15,7 +15,7 @@ LEAVES = ("cost.csv", "trials.csv", "cost.png", "until.csv")
 
 
 @command(
-    "gearquat cost examples/water/in.water --var method rigid --budget 30",
+    "gearquat cost examples/water/in.water --var forces plain --budget 30",
     "gearquat cost examples/case1/in.case1 --error 1e-3 --error 1e-6 --time 20 --out case1",
     "gearquat cost examples/case1/in.case1 --until 1e-3 --time 100 --out until",
 )
