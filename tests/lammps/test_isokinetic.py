@@ -59,19 +59,6 @@ def test_rescaled_momenta_keep_it_to_rounding(lmp_tree, mode):
     assert largest_change(kept, "v_all") < 1e-3 * largest_change(kept, "TotEng")
 
 
-def test_multipliers_take_what_the_forces_do(lmp_tree):
-    """alpha 2K is the power of the forces: the rate at which potential energy is lost."""
-    decks = [cluster(f"isokinetic {mode}", 0.001, 0.02, every=1) for mode in MODES]
-    for mode, table in zip(MODES, run(lmp_tree, decks).thermo):
-        pe, translation, rotation = map(np.array, (table[c] for c in ("PotEng", *PARTS)))
-        alpha = np.array([table[f"f_move[{k}]"] for k in (10, 11)])
-        power = 2 * (alpha[0] * translation + alpha[1] * rotation)
-        n = len(pe) // 2
-        derivative = (8 * (pe[n + 1] - pe[n - 1]) - (pe[n + 2] - pe[n - 2])) / (12 * 0.001)
-        assert power[n] == pytest.approx(-derivative, rel=1e-6)
-        assert (alpha[0] == alpha[1]).all() == (mode == "total")
-
-
 def test_points_have_one_multiplier(lmp_tree):
     """Bodies of one atom have no rotation, and none is required."""
     deck = cluster("isokinetic separate", 0.002)

@@ -1,50 +1,15 @@
-"""Keyword temp: Nose-Hoover chains compared with rigid/nvt/small, energy, target, restart, ranks.
+"""Keyword temp: outputs, canonical distributions, degrees of freedom, targets.
 
-Unsupported settings are in test_bad_input.py, large bodies in test_large_bodies.py.
+The equations are in test_equations.py, restarts in test_restart_state.py, unsupported settings in test_bad_input.py.
 """
 
 import re
 
 import numpy as np
 import pytest
+from scipy import stats
 from support.scenes import MOLECULES, largest_change, last_frame
-from support.constant_temperature import COLUMNS, COMMON, END, KINDS, TEMP, cluster, continued, run
-
-
-def order(steps, errors):
-    return np.polyfit(np.log(steps), np.log(errors), 1)[0]
-
-
-# --- the equations ------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_econserve_to_the_order_of_the_method(lmp_tree, formulation, kind):
-    """Order with a moving target, including the first steps, because the start includes the chains."""
-    values, steps = (6, (0.008, 0.004, 0.002)) if formulation == "first" else (7, (0.016, 0.008, 0.004))
-    least = values - (1.6 if formulation == "second" else 1.3)  # whose coefficients have order values - 1
-    words = f"formulation {formulation} values {values} temp 0.4 0.8 0.3 thermostat {kind}"
-    decks = [cluster(words, dt) for dt in steps]
-    few = "run 4 start 0 stop {}"
-    decks += [cluster(words, dt, every=1, run=few.format(round(0.8 / dt))) for dt in steps]
-    tables = run(lmp_tree, decks).thermo
-    errors = [largest_change(table, "Econserve") for table in tables[:3]]
-    assert order(steps, errors) > least
-    errors = [largest_change(table, "Econserve") for table in tables[3:]]
-    assert order(steps, errors) > least
-    assert largest_change(tables[2], "TotEng") > 1e4 * largest_change(tables[2], "Econserve")
-
-
-def test_chains_cost_no_accuracy(lmp_tree, formulation):
-    """The conserved quantity changes less than the energy without chains, for a short and for a long step."""
-    words = f"formulation {formulation} values {8 if formulation == 'first' else 9}"
-    decks = [cluster(f"{words} temp 0.5 0.5 0.6", dt, 1.6, every=1) for dt in (0.006, 0.012)]
-    decks += [cluster(words, dt, 1.6, every=1, columns="") for dt in (0.006, 0.012)]
-    *chained, short, long = run(lmp_tree, decks).thermo
-    for table, alone in zip(chained, (short, long)):
-        energy = sum(np.array(alone[column]) for column in ("PotEng", "f_move[1]", "f_move[2]"))
-        assert np.ptp(table["Econserve"]) < np.ptp(energy) < 1e-2
-
+from support.constant_temperature import COLUMNS, COMMON, END, TEMP, cluster, continued, run
 
 def test_the_columns_belong_together(lmp_tree, formulation):
     deck = cluster(f"formulation {formulation} temp 0.5 0.7 0.3 thermostat separate tchain 2", 0.016)
@@ -64,35 +29,53 @@ def test_the_columns_belong_together(lmp_tree, formulation):
     assert abs(table["f_move[9]"][-1]) > 1.0
 
 
-def test_what_chains_take_is_what_friction_does(lmp_tree, formulation):
-    words = f"formulation {formulation} {TEMP} thermostat separate"
-    (table,) = run(lmp_tree, [cluster(words, 0.001, 0.02, every=1)]).thermo
-    taken, xi = np.array(table["f_move[9]"]), {k: np.array(table[f"f_move[{k}]"]) for k in (13, 14)}
-    power = 2 * (xi[13] * table["f_move[1]"] + xi[14] * table["f_move[2]"])
-    n = len(taken) // 2
-    slope = (8 * (taken[n + 1] - taken[n - 1]) - (taken[n + 2] - taken[n - 2])) / (12 * 0.001)
-    assert power[n] == pytest.approx(slope, rel=1e-6) and abs(slope) > 1e-3
+HELD = """
+units lj
+atom_style full
+atom_modify map array
+boundary f f f
+region box block -60 60 -60 60 -60 60
+create_box 1 box
+create_atoms 1 single 0.5 -0.3 0.4
+create_atoms 1 single -0.9 0.1 0.2
+create_atoms 1 single 0.1 0.8 -0.7
+mass 1 1.0
+set group all mol 1
+set atom 2 charge 1.0
+set atom 3 charge -1.0
+velocity all create 0.5 4711 loop geom
+pair_style none
+comm_modify cutoff 4
+group handle id 1
+fix move all gear/quat molecule temp 1 1 0.8 values 5 report no
+fix x handle spring tether 1.0 0 NULL NULL 0
+fix y handle spring tether 1.7 NULL 0 NULL 0
+fix z handle spring tether 2.6 NULL NULL 0 0
+fix field all efield 0 0 1.2
+timestep 0.08
+variable cosine equal (z[2]-z[3])/1.5165750888
+variable x equal x[1]
+variable v equal vcm(all,z)*sqrt(3)
+variable energy equal 2*(f_move[1]+f_move[2])+x[1]^2+1.7*y[1]^2+2.6*z[1]^2
+thermo_style custom step v_cosine v_x v_v v_energy
+thermo 250
+run 600000
+"""
 
 
-def test_the_trajectory_that_rigid_nvt_approaches(lmp_tree, formulation):
-    """The degrees of freedom are the same: the chains of rigid/nvt include the total momentum, as ours do
-    beside a field.  Those chains are of first order in the step, so two steps are extrapolated."""
-    field = dict(after="fix field all addforce 0.02 0.01 -0.03", columns="")
-    words = f"formulation {formulation} values 8 temp 0.4 0.8 0.3 thermostat separate tchain 3"
-
-    def end(words, dt):
-        result = run(lmp_tree, [cluster(words, dt, **field)])
-        return last_frame(lmp_tree.folder / "poses.dump"), result.log
-
-    exact, log = end(words, 0.002)
-    assert re.search("of 12 degrees of freedom of translation, with those of .* and 11 of rotation", log)
-    steps = (0.001, 0.0005, 0.00025)
-    rigid = [end("rigid/nvt/small molecule temp 0.4 0.8 0.3 tparam 3 2 3", dt)[0] for dt in steps]
-    errors = [np.abs(2 * fine - coarse - exact).max() for coarse, fine in zip(rigid, rigid[1:])]
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.15) and errors[1] < 1e-5
-    assert np.abs(rigid[-1] - exact).max() > 100 * errors[1]
-    # with another damping time the trajectory differs
-    assert np.abs(end(words.replace("0.3", "0.303"), 0.002)[0] - exact).max() > 100 * errors[1]
+def test_distributions_are_canonical(lmp_wheel):
+    """Of a body that a site off its center ties to springs, with a dipole in a field."""
+    table = lmp_wheel.succeed(HELD, timeout=300).thermo[0]
+    strength = 1.2 * 1.5165750888
+    exact = {
+        "cosine": lambda u: np.expm1(strength * (u + 1)) / np.expm1(2 * strength),
+        "x": stats.norm.cdf,
+        "v": stats.norm.cdf,
+        "energy": stats.chi2(9).cdf,
+    }
+    for name, distribution in exact.items():
+        samples = np.array(table[f"v_{name}"][20:])
+        assert stats.kstest(samples, distribution).pvalue > 0.001, name  # one test in 250 fails for other bodies
 
 
 # bodies, keywords and settings, degrees of freedom of translation and rotation

@@ -1,10 +1,20 @@
 /* The parts of a moving cell: its matrices, friction and history. */
 
-#include "in_a_cell.h"
+#include "checks.h"
+#include "drive.h"
+#include "gear_quat_cell.h"
 
-using namespace InACell;
+using namespace Drive;
+using std::vector;
 
 namespace {
+
+/// All nine components, row by row.
+vector<double> full(const Upper &u)
+{
+  return {u[Upper::XX], u[Upper::XY], u[Upper::XZ], 0.0, u[Upper::YY],
+          u[Upper::YZ], 0.0,          0.0,          u[Upper::ZZ]};
+}
 
 Upper some_matrix()
 {
@@ -100,7 +110,7 @@ TEST(CellHistory, FollowsAFlowWithAConstantRate)
   for (const double friction : {0.0, 0.7, 20.0}) {
     vector<double> off;
     for (const double h : {0.02, 0.01}) {
-      CellHistory cell(with(SECOND, 6));
+      CellHistory cell(scheme_of(SECOND, 6, 2));
       const Upper rate = {{0.5, 0.0, -0.3, 0.0, 0.0, 0.0}};
       const auto exact = [&](double t) {
         // G' = -friction G
@@ -132,7 +142,7 @@ TEST(CellHistory, FollowsAFlowWithAConstantRate)
 
 TEST(CellHistory, ANewStepKeepsTheMotion)
 {
-  CellHistory cell(with(MOMENTUM, 5));
+  CellHistory cell(scheme_of(MOMENTUM, 5));
   cell.begin(some_rate(), 0.1);
   cell.rescale(0.5);
   EXPECT_LT(Check::largest_difference(full(cell.rate(0.05)), full(some_rate())), 1e-15);

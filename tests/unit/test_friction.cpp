@@ -1,8 +1,10 @@
 /* Bodies under a constant friction, which is taken implicitly. */
 
-#include "thermostatted.h"
+#include "drive.h"
 
-using namespace Thermostatted;
+#include <gtest/gtest.h>
+
+using namespace Drive;
 
 namespace {
 
@@ -13,7 +15,7 @@ double remains(const Scheme &scheme, double friction)
   const RigidBody body = {1.3, {0.7, 0.7, 0.7}};
   const BodyState start = {{}, {0, 0, 0, 1}, {0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}};
   const Integrator integrator(scheme, 1.0);
-  vector<double> rows(scheme.size());
+  std::vector<double> rows(scheme.size());
   seed(scheme, body, local_series(body, start, Load{}, 1.0), 1.0, 1.0, rows.data());
   Friction implicit = Multipliers{friction, friction};
   implicit.implicit = true;

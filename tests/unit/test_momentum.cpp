@@ -110,7 +110,8 @@ TEST(Turn, ABodyDoesNotDependOnItsNeighbor)
       for (int i = 0; i < 3; ++i) rows[body][k + 1][i] = wobbles[body].rows[k][i] / (k + 1);
   double both[2][4], alone[4];
   const Turn turn(8);
-  turn.changes(2, bodies, first, WIDTH, both);
+  for (int k = 0; k < 2; k += LANES)
+    turn.changes(std::min(2, LANES), bodies + k, first + k, WIDTH, both + k);
   for (int k = 0; k < 2; ++k) {
     turn.changes(1, bodies + k, first + k, WIDTH, &alone);
     for (int i = 0; i < 4; ++i) EXPECT_EQ(both[k][i], alone[i]);
