@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from support.running import OPEN_MPI_ENVIRONMENT, OPEN_MPI_LAUNCHER, ROOT, Lammps, tree_source
+from support.running import OPEN_MPI_ENVIRONMENT, OPEN_MPI_LAUNCHER, ROOT, Lammps, make_lmp_tree, tree_source
 from shell import CORES, do
-from support.thrown_body import DECK, assert_thrown
+from support.thrown_body import DECK, assert_thrown, build_plugin
 
 INSTALL = (ROOT / "doc" / "install.md").read_text()
 
@@ -68,3 +68,15 @@ def test_traditional_make(folder):
     assert_thrown(lmp.run(DECK.format(load="")))
     do(sources, "make no-gearquat")
     assert [path for path in sources.iterdir() if "gear_quat" in path.name] == []
+
+
+def test_a_plugin_for_a_tree_runs_in_the_tree(tmp_path):
+    load = f"plugin load {build_plugin('tree', 'all') / 'gearquatplugin.so'}"
+    lmp = make_lmp_tree(tmp_path)
+    builtin, loaded = (lmp.succeed(DECK.format(load=command), ranks=2) for command in ("", load))
+    assert "Overriding built-in fix style gear/quat from plugin" in loaded.output
+    assert loaded.thermo == builtin.thermo
+
+
+def test_a_plugin_compiles_without_mpi_and_with_big_integers():
+    build_plugin("serial", "all")

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support.scenes import WATER_MASSES, last_frame, restarted, two_molecules, water, whole_deck
+from support.scenes import WATER_MASSES, last_frame, two_molecules, water, whole_deck
 
 LADDER = [("first", 3), ("first", 6), ("first", 8), ("second", 4), ("second", 9), ("second", 12)]
 ERRORS = "f_move[5] f_move[6] f_move[7] f_move[8]"
@@ -124,47 +124,6 @@ def test_passes_change_orientations_only_through_the_same_forces(liquid):
     }
     change = np.abs(frames[1] - frames[2]).max()
     assert np.abs(center[1] - center[2]).max() < 1e-10 < change  # bodies move as before
-
-
-@pytest.mark.parametrize("after", ["values 8", "values 6 compensate yes"])
-def test_a_restart_with_another_history_says_so(liquid, lmp_tree, after):
-    """Eight rows: values 8, or values 6 and two carries; the formats must not be confused."""
-    before = {"values 8": "values 6 compensate yes", "values 6 compensate yes": "values 8"}[after]
-    liquid(before, run="run 10\nwrite_restart half.restart")
-    deck = water("data.water", f"gear/quat molecule {after}", dt=0.5, steps=10)
-    result = lmp_tree.succeed(restarted(deck, "half.restart"))
-    assert "with other settings of values, compensate; poses" in result.output
-    assert "start of order" in result.output  # a new start
-
-
-@pytest.mark.parametrize("before, after", [("gear", "tuned"), ("tuned", "gear")])
-def test_histories_go_on_with_the_other_corrector(lmp_tree, liquid, before, after):
-    """A warning names both correctors; with the same corrector there is no message."""
-    _, whole = liquid(f"corrector {before} values 8", steps=40)
-    liquid(f"corrector {before} values 8", run="run 20\nwrite_restart half.restart")
-    for corrector in (before, after):
-        words = f"gear/quat molecule corrector {corrector} values 8"
-        deck = water("data.water", words, dt=0.5, steps=40)
-        result = lmp_tree.succeed(restarted(deck, "half.restart").replace("run 40", "run 20"))
-        said = f"written with corrector {before}; its histories go on with corrector {after}"
-        assert (said in result.output) == (corrector == after)
-        assert "start of order" not in result.output
-        end = last_frame(lmp_tree.folder / "poses.dump")[:, 1:4]
-        assert np.abs(end - whole).max() < 1e-6
-
-
-@pytest.mark.parametrize("formulation", ["first", "second"])
-def test_the_formulations_of_the_paper_have_its_coefficients(lmp_wheel, formulation):
-    deck = two_molecules(f"molecule formulation {formulation} {{}}", after="run 0")
-    assert "2 passes, corrector gear" in lmp_wheel.succeed(deck.format("report yes")).output
-    message = "keyword corrector tuned requires formulation momentum: the others have Gear's coefficients"
-    lmp_wheel.refuse(deck.format("corrector tuned"), message, ranks=2)
-
-
-@pytest.mark.parametrize("words", ["passes 2", "project no"])
-def test_formulation_momentum_has_neither_passes_nor_projections(lmp_wheel, words):
-    message = f"keyword {words.split()[0]} requires formulation second or first: formulation momentum neither"
-    lmp_wheel.refuse(two_molecules(f"molecule {words}", after="run 0"), message, ranks=2)
 
 
 def test_jumping_forces_are_told(lmp_wheel, examples):

@@ -7,28 +7,21 @@ from support.scenes import two_molecules
 
 ID1 = "1 3.0 0.33 0.4 0.03 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0"
 
-KEYWORDS = """
-formulation preset values corrector passes compensate start c0 omega momentum project reinit tolerance
-infile couple pchain ptemp flip
-"""
 ARGUMENTS = {
-    **{f"molecule {key}": f"{key}: the value is missing; required: " for key in KEYWORDS.split()},
+    **{f"molecule {key}": f"{key}: the value is missing; required: " for key in ("formulation", "values", "tolerance", "infile")},
     "": "the body style is missing; required: single, molecule, group N ID1",
     "polygon": "Unknown fix gear/quat bodystyle: polygon (single, molecule, group or custom)",
     "group": "group: N is missing; required: N ID1 ID2",
     "group 0": "number of groups is 0 and must be a positive integer",
-    "group two left right": "number of groups is two and must be a positive integer",
     "group 99999999999 left": "99999999999 group IDs expected, 1 given",
     "group 2 left": "2 group IDs expected, 1 given",
     "group 2 left nosuch": "group ID nosuch does not exist",
     "group 2 left all": "is in more than one of the groups",
     "group 3 left none right": "no atom of the fix group is in group none",
     "custom": "custom: i_name or v_name is missing",
-    "custom name": "name is neither i_name nor v_name",
     "custom i_nosuch": "requires an integer vector of that name",
     "custom d_real": "d_real is neither i_name nor v_name",
     "custom i_real": "requires an integer vector of that name",
-    "custom v_nosuch": "requires an atom-style or atomfile-style variable",
     "custom v_equal": "requires an atom-style or atomfile-style variable",
     "custom v_huge": "custom v_huge: the value of atom 6 is not a number below 2.14748e+09",
     "custom i_far": "custom i_far: values from -2147483647 to 2147483647 are too far apart",
@@ -36,65 +29,37 @@ ARGUMENTS = {
     "molecule formulation third": "formulation: unknown value third (momentum, second or first)",
     "molecule formulation first formulation first": "keyword formulation is given twice",
     "molecule values 7.5": "values: 7.5 is not an integer; required: auto or 4 to 12 (momentum, second), 3 to 8 (first)",
-    "molecule values passes 2": "values: passes is not an integer",
     "molecule values 99999999999": "values: 99999999999 is not from 4 to 12",
-    "molecule values 3": "values: 3 is not from 4 to 12, as formulation momentum requires",
     "molecule formulation second values 13": "values: 13 is not from 4 to 12, as formulation second requires",
     "molecule formulation first values 2": "2 is not from 3 to 8, as formulation first requires",
-    "molecule values 9 formulation first": "9 is not from 3 to 8, as formulation first requires",
-    "molecule corrector best": "corrector: unknown value best (tuned or gear)",
     "molecule tolerance 1e-8 corrector tuned": "corrector cannot be used with tolerance: with a tolerance, bodies remember",
     "molecule preset paper tolerance 1e-8": "keyword preset paper cannot be used with tolerance: the paper has constant steps",
     "molecule c0 velocity": "keyword c0 requires formulation second",
     "molecule formulation first corrector tuned": "keyword corrector tuned requires formulation momentum: the others",
-    "molecule formulation second passes 0": "passes: 0 is not from 1 to 2",
     "molecule formulation first passes 3": "passes: 3 is not from 1 to 2",
-    "molecule passes 1.5": "passes: 1.5 is not an integer; required: 1 to 2",
     "molecule passes 2": "keyword passes requires formulation second or first: formulation momentum neither",
-    "molecule compensate 1": "compensate: unknown value 1 (no or yes)",
-    "molecule start warm": "start: unknown value warm (bootstrap or zero)",
-    "molecule c0 none": "c0: unknown value none (position or velocity)",
-    "molecule formulation first c0 velocity": "keyword c0 requires formulation second",
     "molecule omega corrected": "keyword omega requires formulation first",
-    "molecule formulation first omega both": "omega: unknown value both (corrected or predicted)",
     "molecule formulation second momentum predicted": "keyword momentum requires formulation first",
-    "molecule formulation first momentum x": "momentum: unknown value x (corrected or predicted)",
-    "molecule preset article": "preset: unknown value article (none or paper)",
-    "molecule preset paper formulation first c0 velocity": "keyword c0 requires formulation second",
     "molecule preset paper formulation momentum": "keyword preset paper requires formulation second or first: the paper has these",
     "molecule project no": "keyword project requires formulation second or first",
-    "molecule formulation momentum values 3": "3 is not from 4 to 12, as formulation momentum requires",
     "molecule project maybe": "project: unknown value maybe (yes or no)",
-    "molecule reinit 7": "reinit: unknown value 7 (yes or no)",
     "molecule tolerance small": "tolerance: small is not a positive number",
     "molecule tolerance 0": "tolerance: 0 is not a positive number",
-    "molecule tolerance -1e-8": "tolerance: -1e-8 is not a positive number",
     "molecule tolerance nan": "nan is not a positive number",
     "molecule tolerance 1e999": "1e999 is not a positive number",
     "molecule dtmin 0.1": "keyword dtmin requires keyword tolerance",
-    "molecule dtmax 0.1": "keyword dtmax requires keyword tolerance",
-    "molecule tolerance 1e-8 dtmin 0": "dtmin: 0 is not a positive number",
-    "molecule tolerance 1e-8 dtmax -1": "dtmax: -1 is not a positive number",
     "molecule tolerance 1e-8 dtmin 0.2 dtmax 0.1": "dtmin: 0.2 is larger than dtmax, 0.1",
     "molecule tolerance 1e-8 values 11": "values cannot be used with tolerance: with a tolerance, bodies remember",
     "molecule tolerance 1e-8 enrgy": "keyword: enrgy; tolerance takes a positive number and "
     "perhaps length or energy and perhaps its unit; the keywords are formulation, values",
     "molecule temp 1 1 0.1 5": "keyword: 5; temp takes Tstart Tstop Tdamp; the keywords are",
     "molecule spin 5": "Unknown fix gear/quat keyword: spin; the keywords are",
-    "molecule tolerance energy 1e-8": "tolerance: energy is not a positive number",
-    "molecule tolerance -1 energy": "tolerance: -1 is not a positive number",
     "molecule tolerance 1e-8 energy 0": "the unit of energy, 0, is not a positive number",
-    "molecule tolerance 1e-8 length -3.4": "the unit of length, -3.4, is not a positive number",
-    "molecule tolerance 1e-8 length 1e999": "the unit of length, 1e999, is not a positive number",
     "molecule tolerance 1e-8 length nan": "Unknown fix gear/quat keyword: nan",
-    "molecule tolerance 1e-8 3.4": "Unknown fix gear/quat keyword: 3.4",
     "molecule tolerance 1e-200 length 1e-200": "tolerance: 1e-200 times 1e-200 is too small",
     "molecule tolerance 1e200 length 1e200": "tolerance: 1e+200 times 1e+200 is too large",
-    "molecule tolerance 1e-8 tolerance 1e-9 energy": "keyword tolerance is given twice",
     "molecule every/time 0.1": "keyword every/time requires keyword tolerance",
     "molecule tolerance 1e-8 every/time 0": "every/time: 0 is not a positive number",
-    "molecule tolerance 1e-8 every/time": "every/time: the value is missing; required: a positive",
-    "molecule tolerance inf energy": "tolerance: inf is not a positive number",
     "molecule infile nosuch": "cannot open file nosuch",
     'molecule infile ""': "infile: the value is an empty word",
     'molecule mol ""': "mol: the value is an empty word",
@@ -103,48 +68,26 @@ ARGUMENTS = {
     "molecule force 1 on on yes": "force: unknown zflag yes (on or off)",
     "molecule force 3 off off off": "force: bodies 3 are neither a number from 1 to 2 nor a range",
     "molecule torque 2*1 off off off": "torque: bodies 2*1 are neither a number from 1 to 2",
-    "molecule torque left on on off": "torque: bodies left are neither a number from 1 to 2",
     "molecule mol some force * on on off": "keyword force cannot be used with mol: the numbers of bodies",
-    "molecule formulation first isokinetic both": "isokinetic: unknown value both (none, total or separate)",
     "molecule isokinetic total": "keyword isokinetic requires formulation first: its constraint",
     "molecule rescale yes": "keyword rescale requires keyword isokinetic",
-    "molecule formulation first isokinetic none rescale no": "rescale requires keyword isokinetic",
     "molecule formulation first isokinetic total tolerance 1": "formulation cannot be used with tolerance",
-    "molecule temp": "temp: Tstart is missing; required: Tstart Tstop Tdamp",
     "molecule temp 1.0 1.0": "temp: Tdamp is missing; required: Tstart Tstop Tdamp",
-    "molecule temp 0 1 0.1": "temp: Tstart 0 is not a positive number",
     "molecule temp 1 -1 0.1": "temp: Tstop -1 is not a positive number",
-    "molecule temp 1 1 0.0": "temp: Tdamp 0.0 is not a positive number",
     "molecule temp 1 1 tchain": "temp: Tdamp tchain is not a positive number",
-    "molecule temp 1 1 nan": "temp: Tdamp nan is not a positive number",
-    "molecule temp 1 1 0.1 temp 1 1 0.1": "keyword temp is given twice",
     "molecule temp 1 1 0.1 tchain 0": "tchain: 0 is not from 1 to 10",
-    "molecule temp 1 1 0.1 tchain 11": "tchain: 11 is not from 1 to 10",
-    "molecule temp 1 1 0.1 tchain 1.5": "tchain: 1.5 is not an integer; required: 1 to 10",
     "molecule tchain 3": "keyword tchain requires keyword temp",
     "molecule thermostat total": "keyword thermostat requires keyword temp",
-    "molecule temp 1 1 0.1 thermostat both": "thermostat: unknown value both (total or separate)",
     "molecule formulation first isokinetic total temp 1 1 0.1": "keyword temp cannot be used with isokinetic: both keep",
     "molecule temp 1 2 0.1 tolerance 1e-8": "Tstart 1 and Tstop 2 differ, which cannot be used with tolerance",
-    "molecule tparam 3 2 3": "Unknown fix gear/quat keyword: tparam; the keywords are",
-    "molecule iso": "iso: Pstart is missing; required: Pstart Pstop Pdamp",
-    "molecule iso 1 1": "iso: Pdamp is missing; required: Pstart Pstop Pdamp",
     "molecule iso one 1 1": "iso: Pstart one is not a number",
-    "molecule iso 1 nan 1": "iso: Pstop nan is not a number",
-    "molecule aniso 1 1 0": "aniso: Pdamp 0 is not a positive number",
-    "molecule x 1 1 -1": "x: Pdamp -1 is not a positive number",
     "molecule xy 0 0 inf": "xy: Pdamp inf is not a positive number",
-    "molecule iso 1 1 1 iso 1 1 1": "keyword iso is given twice",
     "molecule iso 1 1 1 aniso 1 1 1": "keyword iso cannot be used with aniso: it sets all directions",
     "molecule aniso 1 1 1 z 1 1 1": "keyword aniso cannot be used with z: it sets all directions",
-    "molecule tri 1 1 1 xy 0 0 1": "keyword tri cannot be used with xy: it sets all directions",
     "molecule tri 1 1 1": "keywords tri, xy, xz and yz require a triclinic box; write change_box all triclinic",
-    "molecule x 1 1 1 y 1 1 1 xy 0 0 1": "require a triclinic box",
     "molecule iso 1 1 1 couple xyz": "keyword iso cannot be used with couple: it couples all edges",
     "molecule aniso 1 1 1 couple all": "couple: unknown value all (none, xyz, xy, yz or xz)",
     "molecule x 1 1 1 y 1 1 2 couple xy": "couple: directions x and y need keywords with the same Pstart, Pstop and Pdamp",
-    "molecule x 1 1 1 y 1 2 1 couple xy": "couple: directions x and y need keywords with the same",
-    "molecule y 1 1 1 couple yz": "couple: directions y and z need keywords with the same",
     "molecule z 1 1 1 couple xy": "couple: directions x and y need keywords with the same",
     "molecule couple xy": "keyword couple requires keyword aniso, x, y or z",
     "molecule pchain 3": "keyword pchain requires keyword iso, aniso, tri, x, y, z, xy, xz or yz",
@@ -152,18 +95,19 @@ ARGUMENTS = {
     "molecule temp 1 1 0.1 flip no": "keyword flip requires keyword iso, aniso, tri",
     "molecule fixedpoint 0 0 0": "keyword fixedpoint requires keyword iso, aniso, tri",
     "molecule iso 1 1 1 fixedpoint 0 0": "fixedpoint: z is missing; required: x y z",
-    "molecule iso 1 1 1 fixedpoint 0 0 up": "fixedpoint: z up is not a number",
     "molecule iso 1 1 1 pchain 11": "pchain: 11 is not from 0 to 10",
-    "molecule iso 1 1 1 pchain -1": "pchain: -1 is not from 0 to 10",
-    "molecule iso 1 1 1 flip maybe": "flip: unknown value maybe (yes or no)",
-    "molecule iso 1 1 1 ptemp 0": "ptemp: 0 is not a positive number",
     "molecule iso 1 1 1 temp 1 1 0.1 ptemp 1": "keyword ptemp cannot be used with temp: their temperature",
     "molecule tri 1 1 1 force * on on off": "keyword force cannot be used with tri: in a box that shears",
     "molecule iso 1 1 1 mol some": "keyword iso cannot be used with mol: with a moving box",
     "molecule iso 1 2 1 tolerance 1e-8": "Pstart 1 and Pstop 2 differ, which cannot be used with tolerance",
     "molecule formulation first isokinetic total z 1 1 1": "keyword z cannot be used with isokinetic: constant kinetic energy",
-    "molecule iso 1 1 1 dilate solvent": "dilate: unknown value solvent (all)",
     "molecule dilate all": "keyword dilate requires keyword iso, aniso, tri",
+    "molecule langevin 1 1 1 4711 temp 1 1 1": "keyword langevin cannot be used with temp",
+    "molecule langevin 1 1 1 4711 values 5": "keyword langevin cannot be used with values",
+    "molecule langevin 1 1 1 4711 tolerance 1e-6": "keyword langevin cannot be used with tolerance",
+    "molecule langevin 1 1 1 4711 formulation first": "keyword langevin requires formulation momentum or second",
+    "molecule langevin 1 1 1 4711 iso 1 1 1 ptemp 1": "keyword ptemp cannot be used with langevin",
+    **{f"molecule langevin 1 1 1 {seed}": "seed" for seed in ("0", "-3", "1.5", "1e12")},
     "single mol some": "keyword mol requires bodystyle molecule",
     "molecule formulation first isokinetic total mol some": "keyword mol cannot be used with isokinetic: inserted bodies add",
     "molecule formulation first isokinetic total force 1 on on off": "keyword force cannot be used",
@@ -380,25 +324,24 @@ def test_a_pressure_along_a_direction_that_is_not_periodic(lmp_tree, axis):
     lmp_tree.succeed(two_molecules(f"molecule {others}", boundary=boundary))
 
 
-@pytest.mark.parametrize("words", ["z 1 1 1", "x 1 1 1 xz 0 0 1", "x 1 1 1 yz 0 0 1"])
-def test_a_pressure_out_of_the_plane(lmp_tree, words):
+OUT_OF_THE_PLANE = {
+    **dict.fromkeys(["force * on on on", "torque 1 off on on"], "has to be off in a 2d simulation"),
+    **dict.fromkeys(["z 1 1 1", "x 1 1 1 yz 0 0 1"], "in two dimensions there is no pressure component z, xz or yz"),
+    "x 1 1 1 y 1 1 1 couple xz": "in two dimensions there is no edge along z; use couple xy",
+}
+
+
+@pytest.mark.parametrize("words", OUT_OF_THE_PLANE)
+def test_out_of_the_plane(lmp_tree, words):
     deck = two_molecules(f"molecule {words}").replace("boundary", "dimension 2\nboundary", 1)
     deck = deck.replace("-10 10\ncreate_box", "-0.5 0.5\ncreate_box")
     deck = re.sub(r"(single \S+ \S+) \S+", r"\1 0.0", deck)
-    lmp_tree.refuse(deck, "in two dimensions there is no pressure component z, xz or yz", ranks=2)
+    lmp_tree.refuse(deck, OUT_OF_THE_PLANE[words], ranks=2)
 
 
 def test_one_part_alone_has_a_temperature(lmp_tree):
     before = "velocity all set 0 0 0\ngroup one molecule 1\nvelocity one set 0.3 0 0.1"
     lmp_tree.succeed(two_molecules("molecule temp 1 1 0.1", before=before))
-
-
-@pytest.mark.parametrize("words", ["force * on on on", "torque 1 off on on"])
-def test_out_of_the_plane(lmp_tree, words):
-    deck = two_molecules(f"molecule {words}").replace("boundary", "dimension 2\nboundary", 1)
-    deck = deck.replace("-10 10\ncreate_box", "-0.5 0.5\ncreate_box")
-    deck = re.sub(r"(single \S+ \S+) \S+", r"\1 0.0", deck)
-    lmp_tree.refuse(deck, "has to be off in a 2d simulation", ranks=2)
 
 
 def test_empty_group(lmp_tree):

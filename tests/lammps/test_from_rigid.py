@@ -66,7 +66,7 @@ TRIED = {
     "fix deposit": "test_coming_and_going.py",
     "fix hmc": "test_other_fixes.py",
     "neigh_modify exclude molecule/intra": "test_report.py",
-    "read_restart": "test_restart_matrix.py",
+    "read_restart": "test_restart_state.py",
     "fix momentum": "test_other_fixes.py",
     "molecule ID 0": "test_bad_input.py",
     "large steps, long sampling": "test_accuracy_words.py",

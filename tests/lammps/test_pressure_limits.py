@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support.constant_pressure import pressed, trimers
+from support.constant_pressure import pressed
 from support.scenes import largest_change
 
 # --- the frequency of the box --------------------------------------------------------------------
@@ -91,10 +91,3 @@ def test_a_box_that_becomes_too_stiff(lmp_wheel, words):
     *_, (measured, _) = TOLD.findall(lmp_wheel.succeed(crystal(words, dt, again, last=last)).words)
     assert float(radians) == pytest.approx(float(measured), rel=0.1)
     assert float(radians) > 0.6 * fastest
-
-
-@pytest.mark.parametrize("tied", ["xz", "yz"])
-def test_no_edge_along_z_in_two_dimensions(lmp_wheel, tied):
-    trimers(lmp_wheel.folder / "data.flat", flat=True)
-    deck = pressed(f"x 1 1 1 y 1 1 1 couple {tied}", dimension=2, data="data.flat")
-    lmp_wheel.refuse(deck, "in two dimensions there is no edge along z; use couple xy")

@@ -59,17 +59,6 @@ def test_the_bits_need_the_same_grid_of_ranks(lmp_tree, processors, same):
     assert apart(whole, again) == 0.0 if same else 0.0 < apart(whole, again) < 1e-12
 
 
-def test_what_a_restart_file_does_not_fit(lmp_tree):
-    """With other components or another chain histories start again, and a message names the keyword."""
-    decks = [pressed(MODES["NPT"], run="run 20\nwrite_restart half\nrun 20")]
-    for words in ("iso 0.3 0.3 1.0 temp 0.7 0.7 0.8 thermostat separate", MODES["NPT"] + " pchain 1"):
-        decks.append(continued(pressed(words, run="run 20"), "half"))
-    result, _ = run(lmp_tree, decks)
-    for said in ("iso, aniso, tri, x, y, z, xy, xz, yz or couple", "pchain"):
-        assert said in result.words
-    assert all(largest_change(table) < 1e-6 for table in result.thermo)
-
-
 # --- ranks and images ---------------------------------------------------------------------------
 
 

@@ -95,16 +95,3 @@ def test_a_build_that_cannot_flip_says_so(lmp_wheel, ranks):
     assert min(without["Xy"]) > 0.0 and (min(with_flip["Xy"]) > 0.0) == (ranks == 2)
     assert with_flip["Econserve"] == pytest.approx(without["Econserve"], rel=1e-13)
     assert np.abs(flipped - as_before)[:, 3:6].max() < 1e-13
-
-
-def test_restart_and_ranks(lmp_tree):
-    words = MODES["shear ramps"]
-    span = "start 0 stop 100"
-    decks = [
-        tilted(words, run=f"run 50 {span}\nwrite_restart half\nrun 50 {span}", pair=REPULSIVE),
-        tilted(words, run=f"run 50 {span}", box="read_restart half", pair=REPULSIVE),
-    ]
-    _, (one, again) = ends(lmp_tree, decks)
-    assert (one == again).all()
-    _, (many,) = ends(lmp_tree, decks[:1], 2)
-    assert np.abs(many - one)[:, 3:6].max() < 1e-10

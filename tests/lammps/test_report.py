@@ -67,12 +67,6 @@ def test_no_is_silent(lmp_tree):
     assert report(lmp_tree, two_molecules("molecule report no")) == []
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_another_word_is_refused(lmp_tree, ranks):
-    message = "Fix gear/quat report: unknown value maybe (yes or no)"
-    lmp_tree.refuse(two_molecules("molecule report maybe"), message, ranks=ranks)
-
-
 # --- effects -------------------------------------------------------------------------------------
 SHAPES = {
     "points": ("0 0 0", 3),

@@ -8,6 +8,7 @@ the same numbers, and so does each of the next steps.  Members that are in no li
 import re
 import struct
 
+import numpy as np
 import pytest
 from support.constant_pressure import REPULSIVE, apart, ends as pressed_ends, pressed, trimers
 from support.running import ROOT
@@ -22,6 +23,9 @@ TOLERANCE, LANGEVIN = "tolerance 1e-6", "langevin 0.7 0.9 0.2 4711"
 MODES = [
     "",
     "values 7 compensate yes",
+    "values 4 corrector gear",
+    "values 8 corrector gear passes 1",
+    "values 12",
     TOLERANCE,
     TEMP,
     SEPARATE,
@@ -39,6 +43,7 @@ MODES = [
     f"iso 0.3 0.9 1.0 {LANGEVIN}",
 ]
 CASES = [(f"formulation {f}", mode) for f in FORMULATIONS for mode in MODES if f == "first" or "isokinetic" not in mode]
+CASES = [(f, mode) for f, mode in CASES if ("first" if "12" in mode else "momentum" if "passes" in mode else "none") not in f]
 CASES = [(f, mode) for f, mode in CASES if LANGEVIN not in mode or "first" not in f]
 CASES = [("" if TOLERANCE in mode else f, mode) for f, mode in CASES if TOLERANCE not in mode or "first" in f]
 SPAN = f"start 0 stop {STEPS + MORE}"
@@ -116,18 +121,45 @@ def test_restarts_on_several_ranks_and_ranks_agree(lmp_tree):
             assert apart(whole, ends[1][2 * EQUAL.index(words)]) < 1e-10, words
 
 
-# --- a barostat with another damping time -------------------------------------------------------
+# --- other settings -------------------------------------------------------------------------------
+
+NEW = "written with other settings of {}; poses"
+#: words of the run that writes a file and of the run that reads it, and what the log says
+OTHERS = [
+    ("values 6 compensate yes", "values 8", "with other settings of values, compensate; poses"),
+    ("values 8", "values 6 compensate yes", "with other settings of values, compensate; poses"),
+    ("", "formulation second", NEW.format("formulation")),
+    ("formulation second", "formulation first", NEW.format("formulation")),
+    ("formulation first", "", NEW.format("formulation")),
+    ("formulation first isokinetic total", "formulation first isokinetic separate", NEW.format("isokinetic")),
+    ("formulation first isokinetic total", "formulation first", NEW.format("isokinetic")),
+    (TEMP, f"{TEMP} thermostat separate", NEW.format("thermostat")),
+    (TEMP, f"{TEMP} tchain 4", NEW.format("tchain")),
+    (TEMP, "", NEW.format("temp")),
+    (TEMP, "temp 0.7 0.7 0.9", "the thermostat has another target"),
+    (f"{TEMP} tolerance 1e-9", "temp 0.9 0.9 0.8 tolerance 1e-9", "the thermostat has another target"),
+    (f"aniso 0.3 0.3 1.0 {TEMP}", f"iso 0.3 0.3 1.0 {TEMP}", "iso, aniso, tri, x, y, z, xy, xz, yz or couple"),
+    (f"iso 0.3 0.3 1.0 {TEMP}", f"iso 0.3 0.3 1.0 {TEMP} pchain 1", NEW.format("pchain")),
+    (f"iso 0.3 0.3 1.0 {TEMP}", f"iso 0.3 0.3 0.6 {TEMP}", "the barostat has another damping time than in the last steps"),
+    ("force 1 off on on", "force 2 off on on", "turn off other components than in the run that wrote"),
+    ("corrector gear values 8", "corrector tuned values 8", "written with corrector gear; its histories go on with corrector tuned"),
+    ("corrector tuned values 8", "corrector gear values 8", "written with corrector tuned; its histories go on with corrector gear"),
+]
 
 
-def test_another_damping_time_is_a_reason_to_start(lmp_tree):
-    words = f"iso 0.3 0.3 {{}} {TEMP}"
-    decks = [
-        deck(words.format(1.0), f"run {STEPS}\nwrite_restart one"),
-        deck(words.format(0.6), f"run 0\nwrite_restart two\nrun {MORE}", "one"),
-        deck(words.format(0.6), f"run {MORE}", "two"),
-    ]
-    said = "the barostat has another damping time than in the last steps; histories are rebuilt"
-    assert lmp_tree.succeed(one_after_the_other(decks)).words.count(said) == 2
+@pytest.mark.parametrize("before, after, said", OTHERS)
+def test_other_settings_than_in_the_file(lmp_tree, before, after, said):
+    """Histories start again, except with another corrector, and a message names the reason; energy is conserved."""
+    decks = [deck(before, f"run {STEPS}\nwrite_restart one\nrun {MORE}"), deck(after, f"run {MORE}", "one")]
+    result = lmp_tree.succeed(one_after_the_other(decks))
+    told = result.words.partition("Reading restart file")[2]
+    assert said in told
+    assert ("start of order" in told) == ("go on" not in said) or "tolerance" in after
+    energies = "PotEng", "f_move[1]", "f_move[2]"
+    whole, other = (sum(np.array(table[name]) for name in energies) for table in result.thermo[1:])
+    assert other[0] == pytest.approx(whole[0], rel=1e-7)
+    if not re.search("temp|iso|force", before + after):
+        assert np.ptp(other) < 1e-6
 
 
 # --- files of other releases --------------------------------------------------------------------

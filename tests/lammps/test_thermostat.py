@@ -8,8 +8,8 @@ import re
 import numpy as np
 import pytest
 from scipy import stats
-from support.scenes import MOLECULES, largest_change, last_frame
-from support.constant_temperature import COLUMNS, COMMON, END, TEMP, cluster, continued, run
+from support.scenes import MOLECULES, largest_change
+from support.constant_temperature import COLUMNS, COMMON, TEMP, cluster, run
 
 def test_the_columns_belong_together(lmp_tree, formulation):
     deck = cluster(f"formulation {formulation} temp 0.5 0.7 0.3 thermostat separate tchain 2", 0.016)
@@ -138,18 +138,6 @@ def test_another_target_starts_anew(lmp_tree, formulation):
     assert then["f_move[9]"][0] != 0.0 and then["f_move[13]"][0] == last["f_move[13]"][-1]
 
 
-def test_a_ramp_goes_over_runs(lmp_tree):
-    """One run, and parts of it with start and stop."""
-    words = "temp 0.4 0.8 0.3"
-    parts = "\n".join(f"run {n} start 0 stop 200" for n in (50, 50, 100))
-    decks = [cluster(words, run=f"run 200\n{END.format('whole')}")]
-    decks += [cluster(words, run=f"{parts}\n{END.format('parts')}")]
-    result = run(lmp_tree, decks)
-    whole, parts = (last_frame(lmp_tree.folder / f"{name}.end") for name in ("whole", "parts"))
-    assert np.abs(whole - parts).max() < 1e-12
-    assert "another target" not in result.log
-
-
 def test_another_step(lmp_tree, formulation):
     commands = "run 100\ntimestep 0.003\nrun 100\ntimestep 0.004\nrun 100"
     tables = run(lmp_tree, [cluster(f"formulation {formulation} {TEMP}", run=commands)]).thermo
@@ -170,14 +158,6 @@ def test_several_fixes(lmp_tree, formulation):
     assert largest_change(result.thermo[0], "TotEng") > 1e-2
 
 
-def test_respa(lmp_tree):
-    ends = []
-    for style in ("", "run_style respa 2 1 pair 1 kspace 2"):
-        run(lmp_tree, [cluster(TEMP, style=style, run="run 50\n" + END.format("a"))])
-        ends.append(last_frame(lmp_tree.folder / "a.end"))
-    assert np.abs(ends[0] - ends[1]).max() < 1e-12
-
-
 def test_a_body_is_taken_away(lmp_tree):
     commands = "run 20\ngroup gone molecule 4\ndelete_atoms group gone compress no\nrun 100"
     deck = cluster(TEMP, run=commands, every=20, style=COMMON, columns=f"{COLUMNS} v_common")
@@ -186,19 +166,6 @@ def test_a_body_is_taken_away(lmp_tree):
     freedoms = (2 * np.array(table["f_move[1]"]) - table["v_common"]) / table["f_move[10]"]
     assert freedoms == pytest.approx(6.0)
     assert min(table["v_common"]) > 1e-2
-
-
-def test_another_thermostat_after_a_restart_begins_anew(lmp_tree):
-    first = cluster(TEMP, run="run 50\nwrite_restart half\nrun 0")
-    others = [cluster(f"{TEMP} {more}", run="run 20") for more in ("thermostat separate", "tchain 4")]
-    others.append(cluster("", run="run 20", columns=""))
-    slower = cluster("temp 0.5 0.5 0.4", run="run 20")
-    result = run(lmp_tree, [first, *(continued(deck, "half") for deck in (*others, slower))])
-    for keyword in ("thermostat", "tchain", "temp"):
-        assert result.output.count(f"with other settings of {keyword}; poses") == 1
-    assert result.log.count("another target") == 1
-    for table in result.thermo[2:]:
-        assert largest_change(table, "Econserve" if "Econserve" in table else "TotEng") < 1e-6
 
 
 def test_a_damping_time_that_is_too_short(lmp_tree):

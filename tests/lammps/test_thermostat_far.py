@@ -84,20 +84,6 @@ def test_the_order_is_that_of_the_method(lmp_tree, gas):
     assert errors[0] < 1e-4 * np.max(np.abs(table[TAKEN]))
 
 
-def test_restart_and_ranks_of_a_stiff_chain(lmp_tree, gas):
-    end = "write_dump all custom {} id type x y z vx vy vz modify sort id format float %.17g"
-    deck = gas("temp 1.5 1.5 0.5", run=f"run 20\nwrite_restart half\nrun 20\n{end.format('whole')}")
-    again = "units lj\natom_style molecular\nread_restart half\npair_style" + deck.split("pair_style")[1]
-    again = re.sub("velocity.*|run 20\nwrite_restart half\n", "", again)
-    lmp_tree.succeed(deck)
-    for ranks in (1, 4):
-        lmp_tree.succeed(again.replace("whole", f"halves.{ranks}"), ranks=ranks)
-    names = ("whole", "halves.1", "halves.4")
-    whole, one, four = (np.loadtxt(lmp_tree.folder / name, skiprows=9) for name in names)
-    assert (whole == one).all()
-    assert np.abs(whole - four)[:, 5:].max() < 1e-11
-
-
 # --- a first script for water -------------------------------------------------------------------
 
 

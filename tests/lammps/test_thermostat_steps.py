@@ -2,20 +2,11 @@
 
 import numpy as np
 import pytest
-from support.scenes import (
-    MOLECULES,
-    difference,
-    largest_change,
-    last_frame,
-    one_after_the_other,
-    placed,
-    water,
-    water_data,
-)
+from support.scenes import MOLECULES, difference, largest_change, last_frame, one_after_the_other, placed
 from scipy.integrate import solve_ivp
 from support.insertion import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
 from support.constant_temperature import COMMON, END, KINDS, cluster, continued
-from support.step_control import ELEMENTS, LARGEST, LOADS, NEXT, REPEATED, agree_on_ranks, tables
+from support.step_control import ELEMENTS, LARGEST, LOADS, NEXT, REPEATED, tables
 
 TEMP = "temp 0.5 0.5 0.3"
 TAKEN, XI = "f_move[18]", "f_move[22]"  # with tolerance
@@ -70,42 +61,6 @@ def test_a_step_made_again_leaves_the_chains_as_if_met_at_once(lmp_tree):
     for column in (TAKEN, XI):
         assert repeated[column][-1] == pytest.approx(at_once[column][-1], rel=1e-11, abs=1e-13)
         assert repeated[column][-1] != pytest.approx(repeated[column][-2], rel=1e-6, abs=0)
-
-
-def test_a_restart_at_times_of_output_bit_for_bit(lmp_tree):
-    """The command restart renews neighbor lists whenever it writes a file, so both runs use it."""
-    decks = [
-        changing(f"{TEMP} every/time 0.05", "1e-9 energy", f"restart 90 {name}.*\nrun {steps}")
-        for name, steps in (("first", 300), ("second", 210))
-    ]
-    decks[1] = continued(decks[1], "first.90")
-    whole, again = tables(lmp_tree.succeed(one_after_the_other(decks), ranks=4))
-    assert whole[REPEATED][-1] > 0
-    for column in ("Time", "PotEng", "Econserve", NEXT, REPEATED, XI):
-        assert again[column][1:].tolist() == whole[column][91:].tolist(), column
-
-
-def test_ranks_agree(lmp_tree):
-    """Results are compared at the same times, because rounding changes the steps."""
-    fix = "gear/quat molecule temp 300 300 20 tolerance 1e-12"
-    deck = water(water_data(lmp_tree.folder / "data"), fix, dt=0.5, steps=120)
-    deck = deck.replace("fix_modify move energy yes", "")
-    agree_on_ranks(lmp_tree, deck)
-
-
-def test_another_target_starts_anew(lmp_tree):
-    """A change between runs; the step continues."""
-    fix = "gear/quat molecule temp 0.9 0.9 0.3 tolerance 1e-9"
-    run = f"run 100\nunfix move\nfix move all {fix}\nrun 100"
-    cold = changing(TEMP, "1e-9", f"run 100\nwrite_restart cold\n{run}")
-    hot = changing("temp 0.9 0.9 0.3", "1e-9", "run 200")
-    result = lmp_tree.succeed(one_after_the_other([cold, continued(hot, "cold")]))
-    assert result.log.count("the thermostat has another target") == 1
-    before, after = result.thermo[0], result.thermo[-1]
-    assert after[XI][0] == before[XI][-1] != 0.0 and after[TAKEN][0] != 0.0
-    for table in result.thermo:
-        assert largest_change(table, "Econserve") < 1e-5
-    assert largest_change(after, "TotEng") > 1e-1
 
 
 # --- bodies that hardly rotate ------------------------------------------------------------------

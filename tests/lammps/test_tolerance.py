@@ -131,16 +131,6 @@ def test_a_restart_goes_on_bit_for_bit(lmp_tree):
     assert lost["v_total"][1:].tolist() != whole["v_total"][half + 1 :].tolist()
 
 
-def test_ranks_agree_to_rounding(lmp_tree):
-    """At equal times, because the step depends on high differences, which amplify rounding."""
-    deck = case1(until=20, steps=1000).replace("gear/quat molecule", "gear/quat molecule every/time 5")
-    deck = "processors 1 * 1\n" + deck
-    runs = [tables(lmp_tree.succeed(deck, ranks=ranks))[0] for ranks in (1, 2)]
-    for column in ("c_centre[1]", "c_centre[2]", "c_centre[3]", "v_total"):
-        one, two = ([run[column][np.searchsorted(run["Time"], t - 1e-9)] for t in (5, 10, 15, 20)] for run in runs)
-        assert two == pytest.approx(one, rel=1e-9, abs=1e-9)
-
-
 FALL = """
 create_atoms 4 single 5000 0 0
 group free subtract all body cage
