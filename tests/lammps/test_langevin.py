@@ -231,14 +231,6 @@ def test_fast_diffusion_is_warned_of(simulate, tau, warned):
     assert ("free bodies diffuse and drift 1.08 times too fast" in result.words) == warned
 
 
-# --- the same trajectory --------------------------------------------------------------------------
-
-
-def test_seeds_differ(simulate):
-    found = [simulate(langevin=f"{T} {T} 0.2 {seed}", warm=0, run="run 5")[1] for seed in (1, 2)]
-    assert np.abs(found[0] - found[1]).max() > 1e-3
-
-
 # --- what does not move ---------------------------------------------------------------------------
 
 

@@ -5,18 +5,7 @@ from fnmatch import fnmatchcase
 
 import numpy as np
 import pytest
-from support.scenes import (
-    empty_box,
-    frames,
-    last_frame,
-    placed,
-    random_rotation,
-    two_molecules,
-    water,
-    water_data,
-    whole_deck,
-    write_data,
-)
+from support.scenes import empty_box, last_frame, placed, random_rotation, two_molecules, water, whole_deck, write_data
 
 TITLE = re.compile(r"^Fix gear/quat (\S+): (\d+) bodies of (.+) sites, (\d+) degrees of freedom$")
 ROW = re.compile(r"^  (\S.{19}) (on |off)  (\S.*)$")
@@ -150,8 +139,7 @@ def cage(examples, exclude="", fix="molecule", body="body"):
     return deck.replace("fix move body ${style}", f"fix move {body} gear/quat {fix} ")
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("fix", ["molecule", "single"])
+@pytest.mark.parametrize("fix, ranks", [("molecule", 2), ("single", 1)])
 def test_pairs_that_move_nothing_are_found_and_mended(lmp_tree, examples, fix, ranks):
     run = {"steps": 20, "every": 10}
     before = lmp_tree.succeed(cage(examples, fix=fix), run, ranks=ranks)
@@ -189,46 +177,7 @@ def test_a_group_is_proposed_where_there_is_none(lmp_tree, examples):
     assert counted(report(lmp_tree, mended, {"steps": 0})) == {}
 
 
-def test_two_fixes_of_this_style(lmp_tree):
-    two = "fix other right gear/quat molecule report no\nrun 0"
-    deck = two_molecules("molecule", "group left id 1:3\ngroup right id 4:6", two)
-    lines = report(lmp_tree, deck.replace("fix move all", "fix move left"))
-    assert counted(lines) == {"within": (3, 6)}
-    assert proposals(lines) == "neigh_modify exclude molecule/intra left"
-
-
-def test_pairs_beyond_the_list_are_not_counted(lmp_tree):
-    deck = bodies("points", "points", "points")
-    deck = deck.replace("fix move all", "group few id 1\nfix move few")
-    assert counted(report(lmp_tree, deck)) == {}  # two fixed atoms, 5 apart
-    near = deck.replace("single 10 0 0", "single 6 0 0")
-    assert counted(report(lmp_tree, near))["among"] == (1, 1)
-
-
 # --- omitted operations change nothing ------------------------------------------------------------
-def test_points_among_tops_on_several_ranks(lmp_tree, formulation):
-    """On four ranks bodies have ghosts or not, on one rank none: the same to rounding."""
-    # points, rods and an asymmetric body that attract each other
-    shapes = "points", "linear", "asymmetric tops", "points", "linear"
-    deck = bodies(
-        *shapes,
-        fix=f"molecule formulation {formulation}",
-        apart=4,
-        box="-10 20 -10 10 -10 10",  # four ranks: a border in a rod
-        before="pair_style lj/cut 50.0\npair_coeff * * 1.0 1.5",
-        after="velocity all create 1.0 4711 loop geom",
-        dt=0.002,
-        steps=50,
-        run="run 50",
-    )
-    ends = []
-    for ranks in (1, 4):
-        rows = effects(report(lmp_tree, "processors * 1 1\n" + deck, ranks=ranks))
-        assert rows["ghost bodies"].split()[0] == ("on" if ranks > 1 else "off")
-        start, end = frames(lmp_tree.folder / "poses.dump").values()
-        ends.append(end)
-    assert ends[1] == pytest.approx(ends[0], abs=1e-12)
-    assert abs(end - start)[:, 1:].max(axis=1).min() > 1e-3  # all of them
 
 
 def test_a_lone_site_is_a_point_to_the_last_bit(lmp_tree):
@@ -236,43 +185,6 @@ def test_a_lone_site_is_a_point_to_the_last_bit(lmp_tree):
     deck = bodies("points", masses="mass * 0.3", steps=50, run="run 50")
     lmp_tree.succeed(deck.replace("single 0 0 0", "single 0.1 0.3 0.7"))
     assert list(last_frame(lmp_tree.folder / "poses.dump")[0, 1:4]) == [0.1, 0.3, 0.7]
-
-
-# --- significance ---------------------------------------------------------------------------------
-def test_exclusions_with_kspace_change_a_constant(lmp_tree):
-    """LAMMPS warns of such exclusions; the motion is the same."""
-    data = water_data(lmp_tree.folder / "data.water", shift=1.65)
-    ends = []
-    for exclude in ("", "neigh_modify exclude molecule/intra all"):
-        deck = water(data, dt=0.5, steps=40, before=exclude)
-        deck = deck.replace("check yes exclude molecule/intra all", "check yes")
-        coulomb = "pair_style coul/long 4.0\nkspace_style ewald 1.0e-10\npair_coeff * *"
-        deck = re.sub("pair_style.*\n(pair_coeff.*\n)*", f"{coulomb}\n", deck)
-        result = lmp_tree.succeed(deck)
-        assert ("exclusions used with KSpace" in result.output) == bool(exclude)
-        ends.append((result.thermo[-1]["PotEng"], last_frame(lmp_tree.folder / "poses.dump")))
-    (energy, frame), (excluded, excluded_frame) = ends
-    assert excluded_frame == pytest.approx(frame, abs=1e-9)
-    shift = np.subtract(energy, excluded)
-    assert abs(shift[0]) > 1.0 and shift[1] == pytest.approx(shift[0], abs=1e-8)
-
-
-def test_what_is_not_worth_a_line(lmp_tree):
-    """A body among many atoms that move: less than 1 % of all pairs are its own."""
-    data = water_data(lmp_tree.folder / "data.water", shift=1.65)
-    deck = water(data, steps=1).replace("exclude molecule/intra all", "")
-    rest = "group one molecule 1\ngroup rest subtract all one\nfix nve rest nve\n"
-    few = deck.replace("fix move all", f"{rest}fix move one")
-    assert counted(report(lmp_tree, few)) == {}
-    assert list(counted(report(lmp_tree, deck))) == ["within"]
-
-
-def test_a_body_that_meets_its_own_image(lmp_tree):
-    """Forces between a body and its image move it: no advice to exclude them."""
-    near = two_molecules(after="run 0").replace("-10 10 -10 10 -10 10", "-4 8 -4 8 -4 8")
-    assert list(counted(report(lmp_tree, near))) == ["within"]
-    far = near.replace("pair_style zero 2.0", "pair_style zero 10.0")
-    assert counted(report(lmp_tree, far)) == {}
 
 
 # --- rounding of positions -----------------------------------------------------------------------
@@ -296,8 +208,7 @@ def carbon_dioxide(path, off=0.0):
 LENNARD_JONES = "pair_style lj/cut 8.0\npair_coeff 1 1 0.0559 2.757\npair_coeff * 2 0.16 3.033"
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("off, sites", [(0.0, 128), (1e-9, 192)])
+@pytest.mark.parametrize("off, sites, ranks", [(0.0, 128, 2), (1e-9, 192, 1)])
 def test_a_middle_that_rounding_moves_is_at_the_center(lmp_tree, off, sites, ranks):
     data = carbon_dioxide(lmp_tree.folder / "data.co2", off)
     rows = effects(report(lmp_tree, water(data, run="run 0", pair=LENNARD_JONES), ranks=ranks))
@@ -324,8 +235,7 @@ def dioxide(lmp, before="", fix="gear/quat molecule", pair=LENNARD_JONES, run="r
     return deck.replace("check yes exclude molecule/intra all", f"check yes {exclude}")
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("words", ["molecule", "molecule report no"])
+@pytest.mark.parametrize("words, ranks", [("molecule", 2), ("molecule report no", 1)])
 def test_pairs_within_bodies_that_interact_are_named_and_mended(lmp_tree, words, ranks):
     first = lmp_tree.succeed(dioxide(lmp_tree, fix=f"gear/quat {words}"), ranks=ranks)
     assert ACTS.findall(first.output) == [("lj/cut", "1", "2", "1")]
@@ -340,22 +250,9 @@ def test_pairs_within_bodies_that_interact_are_named_and_mended(lmp_tree, words,
     assert shift.min() > 1e5 and np.ptp(shift) < 1e-6 * shift[0]
 
 
-def test_few_pairs_within_bodies_are_named(lmp_tree):
-    """The warning appears even for far less than 1 % of all pairs."""
-    rest = "group one molecule 9\ngroup rest subtract all one\nfix nve rest nve\n"
-    rest += "neigh_modify exclude molecule/intra rest\n"
-    result = lmp_tree.succeed(dioxide(lmp_tree).replace("fix move all", f"{rest}fix move one"))
-    assert counted(lines_of(result)) == {}
-    assert ACTS.findall(result.output) == [("lj/cut", "25", "26", "9")]
-
-
-@pytest.mark.parametrize("sites", [2, 3])
-def test_dumbbells_and_triangles_of_each_body_style(lmp_tree, sites):
-    x = [[0, 0, 0], [0.9, 0, 0], [0.4, 0.8, 0]][:sites]
-    bodies = [np.add(x, [4.0 * k, 0, 0]) for k in range(2)]
-    ranges = " ".join(f"id {k * sites + 1}:{(k + 1) * sites}" for k in range(2))
-    groups = "".join(f"group g{k} {ids}\n" for k, ids in enumerate(re.findall(r"id \S+", ranges)))
-    pair = "pair_style lj/cut 3.0\npair_coeff * * 0.1 1.0\n" + groups
+def test_the_remedy_for_each_body_style(lmp_tree):
+    bodies = [np.add([[0, 0, 0], [0.9, 0, 0], [0.4, 0.8, 0]], [4.0 * k, 0, 0]) for k in range(2)]
+    pair = "pair_style lj/cut 3.0\npair_coeff * * 0.1 1.0\ngroup g0 id 1:3\ngroup g1 id 4:6\n"
     for words, line in (
         ("molecule", "neigh_modify exclude molecule/intra all"),
         ("single", "neigh_modify exclude group all all"),

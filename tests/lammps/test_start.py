@@ -108,21 +108,6 @@ fix_modify s energy yes
     assert with_start["PotEng"][2] != without["PotEng"][2]  # the check can fail
 
 
-@pytest.mark.parametrize(
-    "settings",
-    [
-        dict(after="run 0\ncompute p all pressure thermo_temp", thermo=1),
-        dict(before="reset_timestep 1000000"),
-    ],
-    ids=["observers", "another time"],
-)
-def test_the_trajectory_after_the_start_is_the_same(lmp_tree, settings):
-    """A first run without steps, thermo output, dumps and the time do not change the start."""
-    _, plain = field(lmp_tree, 50, 0.01)
-    _, watched = field(lmp_tree, 50, 0.01, **settings)
-    assert (plain == watched).all()
-
-
 @pytest.mark.parametrize("skin", [0.5, 0.1, 0.02])
 def test_a_thin_skin_needs_nodes_close_together(lmp_tree, skin):
     _, wide = field(lmp_tree, 20, 0.02)

@@ -176,16 +176,6 @@ def test_overlaps(lmp_tree):
     assert table["E_pair"][-1] < 0.2 * table["E_pair"][0] and table["Temp"][-1] < 150
 
 
-def test_a_dtmin_that_is_too_long(lmp_tree):
-    def run(keywords):
-        first, _, last = deck(lmp_tree, "n2", 40.0, 100).rpartition("report no")
-        return f"{first}report no {keywords}{last}"
-
-    lmp_tree.refuse(run("tolerance 1e-4 dtmin 1000"), "and no dtmin")
-    for keywords in ("tolerance 1e-4", "tolerance 1e-4 dtmin 4"):
-        assert drift(lmp_tree.succeed(run(keywords)).thermo[-1]) < MOST_DRIFT
-
-
 def drift(table):
     energy = np.array(table["TotEng"])
     return np.abs(energy - energy[0]).max() / table["KinEng"][0]
@@ -203,8 +193,3 @@ def test_the_advised_step(lmp_tree, name):
     longest = max(advised.values())
     table = lmp_tree.succeed(deck(lmp_tree, name, longest, 200)).thermo[-1]
     assert drift(table) < MOST_DRIFT
-
-
-def test_a_drift_is_seen():
-    energies = dict(KinEng=[50.0, 51.0], TotEng=[-100.0, -98.9])
-    assert drift(energies) > MOST_DRIFT

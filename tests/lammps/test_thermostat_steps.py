@@ -234,18 +234,3 @@ def test_a_restart_with_an_inserted_body(lmp_tree):
     lmp_tree.succeed(one_after_the_other([whole, halves, again]))
     ends = [(lmp_tree.folder / f"{name}.end").read_text() for name in ("whole", "again")]
     assert ends[0] == ends[1] and len(ends[0].splitlines()) == 9 + 14
-
-
-def test_a_body_comes_where_the_step_follows_the_error(lmp_tree):
-    """Without a thermostat the last steps are integrated again, and the error is smaller."""
-    run = UNTIL.format(1.0).replace("run 5000", "run 1\nrun 5000")
-    eps, changes = ("1e-7", "1e-10", "1e-13"), []
-    for temp, more in (("", ""), (TEMP, TAKEN)):
-        words, columns = temp, f"{LARGEST} {LOADS} {more}"
-        decks = [joined(lmp_tree, f"{words} tolerance {e}", 0.004, columns, run) for e in eps]
-        runs = tables(lmp_tree.succeed(one_after_the_other(decks)))[1::2]
-        assert all(run[LARGEST][-1] <= 1 and run[LOADS].max() > 5 for run in runs)
-        changes.append([np.ptp(kinetic_and_potential(run) + run.get(more, 0.0)) for run in runs])
-    without, with_chains = changes
-    assert all(change < 30.0 * one for change, one in zip(with_chains, without))
-    assert with_chains[-1] < 1e-3 * with_chains[0]

@@ -84,23 +84,6 @@ def test_a_first_step_that_is_too_long_is_made_shorter(lmp_tree):
     assert long[LARGEST][-1] <= 1
 
 
-def test_limits_of_the_step(lmp_tree):
-    def limited(words):
-        deck = case1(steps=400).replace("gear/quat molecule", f"gear/quat molecule {words}")
-        result = lmp_tree.succeed(deck)
-        return tables(result)[0], result.output
-
-    free, _ = limited("")
-    run, output = limited("dtmax 0.07")
-    assert run[NEXT].max() <= 0.1 and run[NEXT][1:].max() <= 0.07 < free[NEXT].max()
-    assert "WARNING" not in output
-    least = 1.5 * free[SMALLEST][-1]
-    run, output = limited(f"dtmin {least}")
-    assert run[SMALLEST][-1] == pytest.approx(least, rel=1e-12)
-    assert output.count("dtmin keeps") == 1
-    assert run[HELD][-1] > 1
-
-
 def test_a_restart_goes_on_bit_for_bit(lmp_tree):
     """This is true also where the step is smallest; the timestep command of the script changes nothing.
 
@@ -272,14 +255,19 @@ def test_no_bodies_yet(lmp_tree):
     assert 0.005 < np.diff(run["Time"]).max() < 0.25 * 0.3 * 1.001  # they are inserted with a speed of 1
 
 
-def test_eps_is_a_length(lmp_tree):
-    """The same error and thus the same steps in all systems of units."""
+#: in terms of the units of length and energy
+EPS = ["{0:g}", "1e-7 length {1:g}", "1e-4 energy {2:g}"]
+
+
+@pytest.mark.parametrize("words", EPS)
+def test_eps_in_all_units(lmp_tree, words):
+    """A length, a length of which the unit is given, an energy of which the unit is given: the same steps everywhere."""
     times = {}
     for units in ("real", "metal", "si", "cgs", "nano"):
         scale = UNITS[units]
         data = water_data(lmp_tree.folder / f"data.{units}", units=units)
-        fix = f"gear/quat molecule tolerance {1e-7 * scale['length']:g}"
-        deck = water(data, fix, dt=0.5, steps=60, units=units, columns=f"time {MEAN_LOADS}")
+        eps = words.format(1e-7 * scale["length"], scale["length"], scale["energy"])
+        deck = water(data, f"gear/quat molecule tolerance {eps}", dt=0.5, steps=60, units=units, columns=f"time {MEAN_LOADS}")
         (run,) = tables(lmp_tree.succeed(deck))
         times[units] = run["Time"][-1] / scale["time"]
         assert run[MEAN_LOADS][-1] > 3

@@ -12,7 +12,7 @@ namespace {
 /// All nine components, row by row.
 vector<double> full(const Upper &u)
 {
-  return {u[Upper::XX], u[Upper::XY], u[Upper::XZ], 0.0, u[Upper::YY],
+  return {u[Upper::XX], u[Upper::XY], u[Upper::XZ], 0.0,         u[Upper::YY],
           u[Upper::YZ], 0.0,          0.0,          u[Upper::ZZ]};
 }
 

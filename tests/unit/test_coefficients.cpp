@@ -1,12 +1,7 @@
-/* gear_quat_coefficients.h: every entry as an exact fraction, derived again, compared with the
-   printed tables, and tested with the conditions for a corrector.  Unlike a slope, these tests
-   detect an entry that is wrong by 1 %.  The derivation and the conditions are tested too, for more
-   rows than the kernel uses. */
+/* gear_quat_coefficients.h: every entry as an exact fraction, derived again, and compared with the printed tables. */
 
 #include "gear_quat_coefficients.h"
 #include "oracles/gear_coefficients.h"
-#include "oracles/modular.h"
-#include "oracles/predict_correct.h"
 
 #include <gtest/gtest.h>
 
@@ -24,24 +19,20 @@ Exact exact(const vector<long double> &table)
   return c;
 }
 
-/// The coefficients of the kernel, the derivation of the oracle, and the conditions for this kind
-/// of corrector.
+/// The coefficients of the kernel, and the derivation of the oracle.
 struct FirstOrder {
   static constexpr int FEWEST = FIRST_FEWEST, MOST = FIRST_MOST;
   static Exact kernel(int n) { return exact(first_order_coefficients(n)); }
   static Exact derived(int n) { return first_order(n); }
-  template <class T> static bool judge(const Row<T> &c) { return is_first_order_corrector(c); }
 };
 struct SecondOrderPosition {
   static constexpr int FEWEST = SECOND_FEWEST, MOST = SECOND_MOST;
   static Exact kernel(int n) { return exact(second_order_coefficients(n, false)); }
   static Exact derived(int n) { return second_order(n, position_c0(n)); }
-  template <class T> static bool judge(const Row<T> &c) { return is_position_corrector(c); }
 };
 struct SecondOrderVelocity : SecondOrderPosition {
   static Exact kernel(int n) { return exact(second_order_coefficients(n, true)); }
   static Exact derived(int n) { return second_order(n, velocity_c0(n)); }
-  template <class T> static bool judge(const Row<T> &c) { return is_velocity_corrector(c); }
 };
 
 template <class Kind> class Coefficients : public testing::Test {
@@ -55,24 +46,6 @@ TYPED_TEST(Coefficients, EqualTheExactDerivation)
 {
   for (int n = TypeParam::FEWEST; n <= TypeParam::MOST; ++n)
     EXPECT_EQ(TypeParam::kernel(n), TypeParam::derived(n)) << n;
-}
-
-TYPED_TEST(Coefficients, DoWhatTheCorrectorMust)
-{
-  for (int n = 4; n <= 12; ++n) EXPECT_TRUE(TypeParam::judge(TypeParam::derived(n))) << n;
-  for (int n = TypeParam::FEWEST; n <= TypeParam::MOST; ++n) {
-    const Exact good = TypeParam::kernel(n);
-    ASSERT_TRUE(TypeParam::judge(good)) << n;
-    // a wrong entry is rejected modulo a prime, where fractions do not grow
-    const Row<Modular> same(good.begin(), good.end());
-    ASSERT_TRUE(TypeParam::judge(same)) << n;
-    for (int j = 0; j < n; ++j)
-      for (int percent : {99, 101}) {
-        Row<Modular> bad = same;
-        bad[j] = bad[j] * Modular(percent, 100);
-        EXPECT_FALSE(TypeParam::judge(bad)) << n << ", entry " << j << " at " << percent << " %";
-      }
-  }
 }
 
 TEST(Tables, OfTheLiteratureForFirstOrder)
@@ -144,16 +117,6 @@ TEST(ErrorWeights, AreThoseOfTheDerivationAndDifferencesOfNeighboringC0)
   EXPECT_EQ(second_order_local_error(5), R(2) * (R(3, 8) - R(251, 720)));
 }
 
-TEST(Criteria, TellTheKindsApart)
-{
-  for (int n = 4; n <= 12; ++n) {
-    EXPECT_FALSE(is_velocity_corrector(SecondOrderPosition::derived(n))) << n;
-    EXPECT_FALSE(is_position_corrector(SecondOrderVelocity::derived(n))) << n;
-  }
-  // Adams-Moulton with as many values as its order is another method, and is rejected
-  EXPECT_FALSE(is_first_order_corrector(Exact{{3, 8}, 1, {11, 12}, {1, 3}, {1, 24}}));
-}
-
 TEST(Rational, IsExactAndRefusesOverflow)
 {
   EXPECT_EQ(R(1, 3) + R(1, 6), R(1, 2));
@@ -164,15 +127,4 @@ TEST(Rational, IsExactAndRefusesOverflow)
   R large(1, 3);
   EXPECT_THROW(for (int i = 0; i < 9; ++i) large = large * large, std::overflow_error);
   EXPECT_THROW(R(1, 0), std::domain_error);
-}
-
-TEST(Modular, CalculatesAsFractionsDo)
-{
-  using M = Modular;
-  EXPECT_TRUE(M(1, 3) + M(1, 6) == M(1, 2));
-  EXPECT_TRUE(M(-2, 4) == M(1, -2));
-  EXPECT_TRUE(M(3, 7) * M(14, 9) - M(2, 3) == M(0));
-  EXPECT_TRUE(-M(5, 8) + M(5, 8) == M(0));
-  EXPECT_TRUE(M(251, 720) != M(251, 720) * M(101, 100));
-  EXPECT_THROW(M(1, (1LL << 61) - 1), std::domain_error);
 }

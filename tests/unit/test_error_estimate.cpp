@@ -93,51 +93,6 @@ TEST(ErrorEstimate, IsTheWeightTimesTheResiduals)
     }
 }
 
-TEST(ErrorEstimate, IsALengthAndAnAngleInWhateverUnits)
-{
-  // the cage in other units: of mass, time and length
-  const CageScene scene(1, true);
-  auto largest = [&](const Scheme &scheme, double mass, double time, double length) {
-    const double force = mass * length / (time * time);
-    RigidBody body = scene.body;
-    body.mass *= mass;
-    for (double &moment : body.inertia) moment *= mass * length * length;
-    BodyState start = scene.start;
-    for (int i = 0; i < 3; ++i) {
-      start.center[i] *= length;
-      start.velocity[i] *= length / time;
-      start.omega_body[i] /= time;
-    }
-    auto load = [&](const BodyState &s, double norm2) {
-      BodyState plain = s;
-      for (double &x : plain.center) x /= length;
-      Load l = scene.load(plain, norm2);
-      for (double &f : l.force) f *= force;
-      for (double &t : l.torque_space) t *= force * length;
-      return l;
-    };
-    const double h = 0.2 * time;
-    Motion motion(body, start, load, scheme, h, Start::BOOTSTRAP, h);
-    motion.steps(20);
-    std::array<double, 2> worst = {};
-    for (int n = 0; n < 20; ++n) {
-      const Correction c = motion.step();
-      worst = {std::max(worst[0], c.position_error()), std::max(worst[1], c.angle_error())};
-    }
-    return worst;
-  };
-  for (const Scheme &scheme : {scheme_of(FIRST), scheme_of(SECOND)}) {
-    const auto plain = largest(scheme, 1.0, 1.0, 1.0);
-    ASSERT_GT(plain[0], 1e-10);
-    ASSERT_GT(plain[1], 1e-11);
-    const double units[][3] = {{8.0, 1.0, 1.0}, {1.0, 0.25, 1.0}, {1.0, 1.0, 2.0}, {3.0, 7.0, 0.1}};
-    for (const auto &u : units) {
-      const auto e = largest(scheme, u[0], u[1], u[2]);
-      Check::relatively_near({e[0], e[1]}, {u[2] * plain[0], plain[1]}, 1e-3);
-    }
-  }
-}
-
 TEST(ErrorEstimate, FallsWithThePowerN)
 {
   for (const Scheme &scheme : every_scheme(2, true)) {
@@ -177,31 +132,5 @@ TEST(ErrorEstimate, FirstFormulationAgainstTheTrueLocalError)
     const double wide = h * e.position / e.true_position,
                  narrow = h / 2 * f.position / f.true_position;
     EXPECT_NEAR((2 * narrow - wide) / limit(scheme), 1.0, 0.1) << scheme;
-  }
-}
-
-TEST(ErrorEstimate, FirstFormulationIsOnTheSafeSideUpToAFifthOfARadian)
-{
-  for (const Scheme &scheme : schemes_of(FIRST, 2, true)) {
-    const double h = scheme.values() == 8 ? 0.1 : 0.2;    // 8: oscillates with noise beyond
-    const Errors e = top_run(scheme, h);
-    EXPECT_GT(e.position / e.true_position, 2.0) << scheme;
-    EXPECT_GT(e.angle / e.true_angle, 2.0) << scheme;
-  }
-}
-
-TEST(ErrorEstimate, InTheCage)
-{
-  const CageScene scene(1, true);
-  for (const Scheme &scheme : every_scheme(1, true)) {
-    const Errors e = run(scene.body, scene.start, scene, scheme, 0.2, 30, 150);
-    const double x = e.position / e.true_position, angle = e.angle / e.true_angle;
-    if (scheme.first()) {
-      EXPECT_GT(x, 2.0) << scheme;
-      EXPECT_GT(angle, 2.0) << scheme;
-    } else {
-      EXPECT_NEAR(x / limit(scheme), 1.0, 0.05) << scheme;
-      EXPECT_NEAR(angle / limit(scheme), 1.0, 0.1) << scheme;
-    }
   }
 }

@@ -38,6 +38,15 @@ double missing_energy(Formulation formulation, double size, double factor, bool 
 
 }    // namespace
 
+TEST(Energy, IsThatOfThePaperForBothBodies)
+{
+  for (bool consistent : {true, false})
+    for (int test_case : {1, 3}) {
+      const CageScene scene(test_case, consistent);
+      EXPECT_NEAR(scene.total_energy(scene.start), test_case == 1 ? -0.72360304 : 3.99270832, 5e-9);
+    }
+}
+
 TEST(Energy, IsKeptInTheCage)
 {
   const CageScene scene(1, true);

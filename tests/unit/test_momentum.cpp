@@ -340,48 +340,6 @@ TEST(Momentum, ARodTurnsAboutItsTwoAxes)
   EXPECT_EQ(motion.state().omega_body[2], 0.0);    // it has no momentum
 }
 
-TEST(Momentum, FrictionDampsBothMomenta)
-{
-  const double alpha = 0.3, time = 4.0;
-  const RigidBody body = TOP;
-  const BodyState start = top_state(0.0);
-  const Friction friction = Multipliers{alpha, alpha};
-  const auto missed = [&](double h, bool implicit) {
-    const Scheme scheme = momentum(7);
-    const Integrator integrator(scheme, h);
-    Friction damper = friction;
-    damper.implicit = implicit;
-    std::vector<double> rows(scheme.size());
-    TaylorSeries series = local_series(body, start, damped_load(body, start, Load{}, friction), h);
-    double l[3];
-    for (int i = 0; i < 3; ++i) l[i] = series.momentum[0][i];
-    series.terms = scheme.values();    // of an exponential decay
-    double power = 1.0;
-    for (int k = 0; k < scheme.values(); ++k) {
-      for (int i = 0; i < 3; ++i) {
-        series.momentum[k][i] = power * l[i];
-        series.c[k + 1][i] = power * h * start.velocity[i] / (k + 1);
-      }
-      power *= -alpha * h / (k + 1);
-    }
-    seed(scheme, body, series, h, h, rows.data());
-    for (int step = 0; step < std::lround(time / h); ++step) {
-      integrator.predict(body, rows.data());
-      integrator.correct(body, Load{}, rows.data(), damper);
-    }
-    double before[3], after[3];
-    momentum_along_space(body, start, before);
-    momentum_along_space(body, integrator.body_state(body, rows.data()), after);
-    const double left = std::exp(-alpha * time);
-    for (double &one : before) one *= left;
-    return Check::largest_difference(before, after, 3);
-  };
-  for (const bool implicit : {false, true}) {
-    EXPECT_LT(missed(0.2, implicit), 1.0e-5);
-    EXPECT_GT(std::log2(missed(0.4, implicit) / missed(0.2, implicit)), 5.0) << implicit;
-  }
-}
-
 TEST(Momentum, VelocitiesAreWrittenAndRead)
 {
   const Scheme scheme = momentum(9);

@@ -1,7 +1,6 @@
 /* Remembered loads: their polynomial, the choice of step and order, and the results in the paper's
    cage. */
 
-#include "chain_record.h"
 #include "checks.h"
 #include "follow.h"
 #include "scenes.h"
@@ -66,37 +65,6 @@ Follower driven(double h, const std::function<double(double)> &force)
             load.force[1] = force(ones[0].state.center[0]);    // this coordinate is the time
             return vector<Load>{load};
           }};
-}
-
-/// The error of a chain's step that is estimated for n values, over the error of a step with them:
-/// of the position of a body in thermal motion, and of its energy.
-double chain_estimate_over_error(int n, double h)
-{
-  // 2K(t) = A exp(t): xi_1 is known, and so are all of its derivatives
-  const ChainTarget target = {0.7, 0.0, 5.0, 1.1};
-  constexpr int STEPS = 24;
-  const double a = 6.0, per_freedom = a / (target.freedoms * target.kt);
-  const auto xi = [&](double t) {
-    return (per_freedom * std::expm1(t) - t) / (target.period * target.period);
-  };
-  Chain chain(1);
-  double now = a;
-  chain.seed(&now, 0, 0.0, 1);
-  ChainRecord known = ChainRecord::of(chain);
-  known.known = n + 1;
-  for (int k = 0; k <= n; ++k) {
-    known.sums[k] = a * std::exp(-k * h);
-    known.ages[k] = k * h;
-  }
-  known.restore(chain);
-  double before = 0.0;
-  for (int step = 1; step <= STEPS; ++step) {
-    before = chain.friction() - xi((step - 1) * h);
-    EXPECT_TRUE(chain.advance(target, a * std::exp(step * h), h, n));
-    chain.conclude();
-  }
-  const double error = std::fabs(chain.friction() - xi(STEPS * h) - before);
-  return double(adams_moulton(n)) * chain.left_out(target, h, n) / error;
 }
 
 }    // namespace
@@ -202,15 +170,6 @@ TEST(RememberedLoads, LoadsComeAndGoWithoutAnError)
   EXPECT_EQ(body.remembered.loads(), loads);
   const int size = (loads + 2) * Scheme::SECOND_WIDTH;
   EXPECT_LT(Check::largest_difference(body.rows(), before.data(), size), 1e-15);
-}
-
-TEST(RememberedLoads, ErrorsOfAChainAreThoseOfABodyInThermalMotion)
-{
-  for (int n = 5; n <= 7; ++n) {
-    const double found =    // without the term of h
-        2.0 * chain_estimate_over_error(n, 0.05) - chain_estimate_over_error(n, 0.1);
-    Check::relatively_near({found}, {1.0}, 0.0045);
-  }
 }
 
 TEST(StepControl, TheLaw)
@@ -380,18 +339,4 @@ TEST(StepControl, RoundedCoordinatesMakeNoStepShorter)
     steps.push_back(follower.steps);
   }
   EXPECT_LT(steps[2], 50 * steps[0]) << steps[0] << " " << steps[1] << " " << steps[2];
-}
-
-TEST(StepControl, EncountersKeepTheEnergy)
-{
-  // the first 2000 of case 1, with a dozen close encounters; fixed steps of the mean length have an
-  // error ten thousand times as large
-  Following body(1e-13, 0.1);
-  EXPECT_LT(body.run(2000.0), 1e-8);
-  EXPECT_LE(body.largest, 1.0);
-
-  const double mean = body.t / body.steps;
-  Following fixed(1e-13, mean);
-  fixed.control.shortest = fixed.control.longest = mean;
-  EXPECT_GT(fixed.run(2000.0), 1e-6);
 }

@@ -137,42 +137,6 @@ TEST(StartPlan, EvaluationsInTheCage)
     }
 }
 
-TEST(StartPlan, EvaluationsOfSmoothMotions)
-{
-  // at most one round more than pairs: each gains an order if forces depend on velocities
-  for (int values = FIRST_FEWEST; values <= SECOND_MOST; ++values) {
-    const int pairs = StartPlan::pairs_for(values);
-    for (double h : {0.02, 0.05, 0.1, 0.2, 0.3}) {
-      const Found found = bootstrap(values, TOP, top_state(0.0), swing, h);
-      EXPECT_LE(found.evaluations, pairs * (pairs + 1) + 4 * pairs) << values << ' ' << h;
-      EXPECT_EQ(found.spacing, h);
-    }
-  }
-}
-
-TEST(StartPlan, TheStartIsNotWhatLimitsARun)
-{
-  // compared with a start with rounding errors only: far below the error of the run itself
-  const Scene scene = cage(CageScene(1, true));
-  const Found exact = bootstrap(12, scene.body, scene.start, scene.load, 0.05, 12.0);
-  const Scheme scheme = scheme_of(SECOND, 8, 2);
-  for (double h : {0.4, 0.25, 0.125}) {
-    const Found found = bootstrap(8, scene.body, scene.start, scene.load, h, 12.0);
-    auto end = [&](const Found &start) {
-      vector<double> rows(scheme.size());
-      seed(scheme, scene.body, start.series, start.spacing, h, rows.data());
-      Motion motion(scene.body, scene.load, scheme, h, rows);
-      motion.run(scene.time);
-      return motion.state();
-    };
-    const BodyState best = end(exact);
-    auto differs = [&](const BodyState &s) {
-      return Check::largest_difference(s.center, best.center, 3);
-    };
-    EXPECT_LT(differs(end(found)), 1e-4 * scene.missed(best)) << h;
-  }
-}
-
 TEST(StartPlan, AJumpIsRecognizedAtTheFirstSpacing)
 {
   for (double height : {1e-3, 1e-2, 0.1}) {
@@ -192,28 +156,4 @@ TEST(StartPlan, HalvesTheSpacingUntilTheFirstPairIsForetold)
   EXPECT_LT(wide.spacing, 1.6);
   const LoadOf broken = constant({{std::nan(""), 0, 0}, {0, 0, 0}});
   EXPECT_THROW(bootstrap(6, TOP, top_state(0.0), broken, 0.1), std::runtime_error);
-}
-
-TEST(StartPlan, NorInFastRotation)
-{
-  // forces that depend on velocities converge more slowly, round by round
-  const Scene scene = free_top();
-  const TaylorSeries exact = settled_series(12, scene.body, scene.start, scene.load, 0.05);
-  for (int values : {6, 7, 8}) {
-    const Scheme scheme = scheme_of(SECOND, values, 2);
-    for (double h : {0.2, 0.1}) {
-      const auto end = [&](const TaylorSeries &series, double spacing) {
-        vector<double> rows(scheme.size());
-        seed(scheme, scene.body, series, spacing, h, rows.data());
-        Motion motion(scene.body, scene.load, scheme, h, rows);
-        motion.run(scene.time);
-        return motion.state();
-      };
-      const BodyState best = end(exact, 0.05);
-      const Found found = bootstrap(scheme.start_values(), scene.body, scene.start, scene.load, h);
-      EXPECT_LT(Check::attitude_distance(end(found.series, found.spacing).q, best.q),
-                0.2 * scene.missed(best))
-          << values << ' ' << h;
-    }
-  }
 }

@@ -66,20 +66,6 @@ TEST(Startup, RowsHaveTheOrderTheMethodNeeds)
   }
 }
 
-TEST(Startup, FoundAtALargeStepAndSeededToASmallOne)
-{
-  for (const Scheme &scheme : every_scheme()) {
-    const double tight = scheme.values() < 5 ? 1e-9 : scheme.values() < 7 ? 1e-12 : 3e-15;
-    const vector<double> exact = exact_rows(scheme, 0.001);
-    vector<double> large = rows_of(scheme, 0.05, 0.05);
-    const vector<double> small = rows_of(scheme, 0.001, 0.05);
-    Integrator(scheme, 0.05).rescale(large.data(), 0.001 / 0.05);
-    EXPECT_LT(largest_difference(large, small), 1e-16);    // equivalent to rescaling to h
-    EXPECT_LT(largest_difference(small, exact), tight);
-    EXPECT_GT(largest_difference(rows_of(scheme, 0.00101, 0.0505), small), 1e-6);
-  }
-}
-
 TEST(Startup, TwoTermsAreThePapersZeroStart)
 {
   // known: the state and its rates; with forces one more derivative of everything, and no further
@@ -121,17 +107,6 @@ TEST(Startup, TimeTranslation)
   }
 }
 
-TEST(Startup, SeriesOfLaterStartIsTheShiftedSeries)
-{
-  const double H = 0.05;
-  const TaylorSeries early = bootstrap(8, TOP, top_state(0.0), swing, H).series;
-  TaylorSeries s = bootstrap(8, TOP, top_state(H), swing, H).series;
-  Nordsieck<7>::rescale(s.c[0], s.terms, -1.0);
-  Nordsieck<7>::predict(s.c[0], s.terms);    // back by one node
-  Nordsieck<7>::rescale(s.c[0], s.terms, -1.0);
-  EXPECT_LT(largest_difference(s.c[0], early.c[0], 6 * 7), 2e-14);
-}
-
 TEST(Startup, TimeReversal)
 {
   // in the cage, where forces and torques depend on all coordinates
@@ -154,17 +129,4 @@ TEST(Startup, TimeReversal)
     EXPECT_LT(reversed(start(back, 1.0), true), 1e-14);
     EXPECT_LT(reversed(start(scene.start, -1.0), false), 1e-14);    // the same with a negative step
   }
-}
-
-TEST(Startup, OfBodiesThatCannotTurn)
-{
-  for (const RigidBody &body : {RigidBody{2.0, {0.0, 0.0, 0.0}}, RigidBody{2.0, {1.0, 0.0, 1.0}}})
-    for (const Scheme &scheme : {scheme_of(FIRST), scheme_of(SECOND)}) {
-      BodyState s = top_state(0.0);
-      for (double &w : s.omega_body) w = 0.0;
-      const vector<double> rows = started(scheme, body, s, swing, 0.02, Start::BOOTSTRAP, 0.05);
-      for (int j = 0; j < scheme.values(); ++j)
-        for (int i = 0; i < 4; ++i)
-          EXPECT_NEAR(rows[j * scheme.width() + scheme.quaternion() + i], j ? 0.0 : s.q[i], 1e-17);
-    }
 }

@@ -114,36 +114,6 @@ TEST(StartupNodes, ForetellingIsExactForWhatTheInnerNodesHold)
     }
 }
 
-TEST(StartupNodes, FewerPairsAreAPolynomialOfLowerDegree)
-{
-  // values at the outer nodes are ignored
-  const Collocation collocation(8);
-  const vector<double> a = of_degree(4, 4);
-  Collocation::Workspace w = nodes_of(a, 4, 2);
-  for (int k : {-4, -3, 3, 4})
-    for (auto &row : w.rate) row[4 + k] = 1e3;
-  const TaylorSeries series = collocation.series(w, 2);
-  ASSERT_EQ(series.terms, 7);
-  for (int j = 0; j <= 4; ++j) EXPECT_NEAR(series.c[j + 2][0], a[j] / ((j + 1) * (j + 2)), 1e-15);
-}
-
-TEST(StartupNodes, BothNodesOfAPairAreSettledAtOnce)
-{
-  // the state at the second node does not depend on the load at the first
-  const Collocation collocation(8);
-  StartHost host = {collocation, TOP, top_state(0.0), swing, 1.0};
-  host.begin(0.1);
-  host.foretell();
-  const double before = collocation.state_at(1, host.work, 0.1).center[0];
-  const BodyState s = collocation.state_at(-1, host.work, 0.1);
-  collocation.set_load(-1, TOP, s, swing(s, 1.0), 0.1, 1.0, host.work);
-  EXPECT_EQ(collocation.state_at(1, host.work, 0.1).center[0], before);
-  const BodyState other = collocation.state_at(1, host.work, 0.1);
-  collocation.set_load(1, TOP, other, swing(other, 1.0), 0.1, 1.0, host.work);
-  collocation.settle(1, host.work);
-  EXPECT_GT(std::fabs(collocation.state_at(1, host.work, 0.1).center[0] - before), 1e-8);
-}
-
 TEST(StartupNodes, ChangeIsRelativeToTheMotion)
 {
   // a point with x'' = F/m: the previous value at the node, the new value, and the scale

@@ -188,18 +188,6 @@ double measured_gain(const Scheme &scheme)
 
 }    // namespace
 
-TEST(Noise, GrowsWithTheNumberOfGearsValues)
-{
-  for (const Formulation formulation : {FIRST, SECOND}) {
-    double last = 0.0;
-    for (const Scheme &scheme : schemes_of(formulation)) {
-      const double gain = measured_gain(scheme);
-      EXPECT_GT(gain, 1.2 * last) << scheme;
-      last = gain;
-    }
-  }
-}
-
 TEST(Noise, RandomForcesHaveVelocityVerlet)
 {
   // a vibration with the same kicks as the method of Swope et al.

@@ -3,9 +3,7 @@
    The higher rows follow from the roots of the corrector's polynomial: -1, -2, ..., -(N-2) for the
    first-order equation.  Row 0 (and, for the second-order equation, row 1) follows from weights of
    integration: Adams-Bashforth's, Stoermer's (positions alone, two steps) and Nystroem's (position
-   from the present velocity, one step).
-
-   The conditions for a set of coefficients are tested separately, in predict_correct.h. */
+   from the present velocity, one step). */
 
 #pragma once
 
