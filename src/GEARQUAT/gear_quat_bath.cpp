@@ -292,13 +292,18 @@ void Bath::take_random_half(const Integrator &integrator, int half)
   if (!words.is_random()) return;
   temperature.aim(update->ntimestep);
   const RandomStep step(0.5 * integrator.step(), words.damp, temperature.line.kt);
+  const auto place = [&](int ibody) {
+    integrator.set_velocities(bodies.rigid_of(ibody), box.scaled(bodies.state_of(ibody)),
+                              acting(ibody), bodies.history(ibody));
+  };
+  const bool at_once = !acts();    // otherwise accelerations depend on velocities of all
   for_moved([&](int ibody) {
     const Body &body = bodies.body_at(ibody);
+    const bool turns = temperature.has(ibody, ROTATION);
     std::array<bool, 6> changes;
     for (int k = 0; k < 3; ++k) {
       changes[k] = temperature.has(ibody, TRANSLATION, k);
-      changes[3 + k] =
-          temperature.has(ibody, ROTATION) && body.rigid.turns_about(k, domain->dimension);
+      changes[3 + k] = turns && body.rigid.turns_about(k, domain->dimension);
     }
     BodyState &state = bodies.change_state(ibody);
     const auto normal = normal_numbers(words.seed, 2 * update->ntimestep + half, body.id);
@@ -308,15 +313,12 @@ void Bath::take_random_half(const Integrator &integrator, int half)
     for (int k = 0; k < 3; ++k) state.velocity[k] += flow[k];
     if (ibody < bodies.nowned()) randomly_taken -= gained;
     bodies.update_frame(ibody);
+    if (at_once) place(ibody);
   });
-  if (acts()) {    // accelerations of bodies and box depend on velocities
-    measure();
-    box.seed_local(integrator.step(), 3, xi[OF_BOX]);
-  }
-  for_moved([&](int ibody) {
-    integrator.set_velocities(bodies.rigid_of(ibody), box.scaled(bodies.state_of(ibody)),
-                              acting(ibody), bodies.history(ibody));
-  });
+  if (at_once) return;
+  measure();
+  box.seed_local(integrator.step(), 3, xi[OF_BOX]);
+  for_moved(place);
 }
 
 void Bath::predict(const Integrator &integrator)

@@ -39,7 +39,7 @@ template <int N, class To> GEAR_QUAT_INLINE void store(int count, const Lanes *f
 }
 
 /// As body_state().
-GEAR_QUAT_INLINE void states_of(const Block &block, double per_h)
+GEAR_QUAT_VARIANTS void states_of(const Block &block, double per_h)
 {
   Lanes inertia[3], center[3], q[4], rates[6], velocity[3], omega[3], axes[9], omega_space[3];
   const auto row = [&block](int start) {
@@ -88,14 +88,14 @@ GEAR_QUAT_INLINE Predicted<Lanes> predicted(const Block &block)
   return now;
 }
 
-GEAR_QUAT_INLINE void free_velocities_of(const MomentumStep &step, const Block &block,
-                                         Velocities &found)
+GEAR_QUAT_VARIANTS void free_velocities_of(const MomentumStep &step, const Block &block,
+                                           Velocities &found)
 {
   step.find_free_velocities(predicted(block), found.linear, found.omega_body);
 }
 
-GEAR_QUAT_INLINE void corrections_of(const MomentumStep &step, const Block &block,
-                                     const Friction &friction, Corrected<double> *found)
+GEAR_QUAT_VARIANTS void corrections_of(const MomentumStep &step, const Block &block,
+                                       const Friction &friction, Corrected<double> *found)
 {
   const Predicted<Lanes> now = predicted(block);
   Corrected<Lanes> all = {};
@@ -112,22 +112,6 @@ GEAR_QUAT_INLINE void corrections_of(const MomentumStep &step, const Block &bloc
   });
 }
 
-GEAR_QUAT_FOR_AVX2 void states_avx2(const Block &block, double per_h)
-{
-  states_of(block, per_h);
-}
-
-GEAR_QUAT_FOR_AVX2 void free_velocities_avx2(const MomentumStep &step, const Block &block,
-                                             Velocities &found)
-{
-  free_velocities_of(step, block, found);
-}
-
-GEAR_QUAT_FOR_AVX2 void corrections_avx2(const MomentumStep &step, const Block &block,
-                                         const Friction &friction, Corrected<double> *found)
-{
-  corrections_of(step, block, friction, found);
-}
 }    // namespace
 
 void Integrator::find_states(const Block &block) const
@@ -137,20 +121,14 @@ void Integrator::find_states(const Block &block) const
       body_state(*block.bodies[body], block.rows[body], *block.states[body], *block.frames[body]);
     return;
   }
-  if (has_avx2())
-    states_avx2(block, per_h);
-  else
-    states_of(block, per_h);
+  states_of(block, per_h);
 }
 
 void Integrator::find_velocities(const Block &block, const Friction &friction,
                                  Velocities &found) const
 {
   if (scheme.momentum()) {
-    if (has_avx2())
-      free_velocities_avx2(momentum_step(), block, found);
-    else
-      free_velocities_of(momentum_step(), block, found);
+    free_velocities_of(momentum_step(), block, found);
     return;
   }
   for (int body = 0; body < block.count; ++body) {
@@ -174,10 +152,7 @@ void Integrator::correct(const Block &block, const Friction &friction) const
     return;
   }
   Corrected<double> found[LANES];
-  if (has_avx2())
-    corrections_avx2(momentum_step(), block, friction, found);
-  else
-    corrections_of(momentum_step(), block, friction, found);
+  corrections_of(momentum_step(), block, friction, found);
   for (int body = 0; body < block.count; ++body)
     *block.last[body] = apply(found[body], block.rows[body]);
 }

@@ -7,12 +7,13 @@
    an element for each of them.  The operations of a body are the same as with numbers of type
    double, and so are the results, in registers of any length.
 
-   A function in two variants has its body in a function that is marked GEAR_QUAT_INLINE.  Another
-   function, marked GEAR_QUAT_FOR_AVX2, contains a copy of it for processors of which has_avx2() is
-   true. */
+   A function that is marked GEAR_QUAT_VARIANTS is compiled twice, also for processors with AVX2;
+   the variant is chosen when the program is loaded.  What it calls is marked GEAR_QUAT_INLINE. */
 
 #ifndef GEAR_QUAT_LANES_H
 #define GEAR_QUAT_LANES_H
+
+#include <cstddef>    // defines __GLIBC__
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -44,19 +45,10 @@ inline double get(const double &a, int /*lane*/)
   return a;
 }
 
-#if defined(__GNUC__) && defined(__x86_64__)
-#define GEAR_QUAT_FOR_AVX2 __attribute__((target("avx2"), flatten))
-inline bool has_avx2()
-{
-  static const bool found = __builtin_cpu_supports("avx2");
-  return found;
-}
+#if defined(__GNUC__) && defined(__x86_64__) && defined(__GLIBC__)
+#define GEAR_QUAT_VARIANTS __attribute__((target_clones("avx2", "default"), flatten))
 #else
-#define GEAR_QUAT_FOR_AVX2
-constexpr bool has_avx2()
-{
-  return false;
-}
+#define GEAR_QUAT_VARIANTS
 #endif
 
 }    // namespace LAMMPS_NS::GearQuat

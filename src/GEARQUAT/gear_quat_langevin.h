@@ -51,9 +51,11 @@ inline std::array<double, 6> normal_numbers(int seed, std::int64_t step, std::in
     return (std::uint32_t) number;
   };
   std::array<double, 6> normal;
+  RandomWords words;
   for (int k = 0; k < 6; k += 2) {
-    const RandomWords words =
-        philox({low(step), low(step >> 32), low(body), low(body >> 32)}, low(seed), low(k / 4));
+    if (k % 4 == 0)
+      words =
+          philox({low(step), low(step >> 32), low(body), low(body >> 32)}, low(seed), low(k / 4));
     const double radius = std::sqrt(-2.0 * std::log((words[k % 4] + 0.5) * UNIT));
     const double angle = TWO_PI * UNIT * words[k % 4 + 1];
     normal[k] = radius * std::cos(angle);

@@ -11,7 +11,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
@@ -95,13 +94,6 @@ ChainTarget Temperature::target(double of_freedoms, double period, double steps_
 /* ----------------------------------------------------------------------
    degrees of freedom, and the common motion
 ------------------------------------------------------------------------- */
-
-bool Temperature::has(int ibody, Part part, int component) const
-{
-  const Mask off = bodies.body_at(ibody).off;
-  if (part == TRANSLATION) return component < domain->dimension && !(off & force_off(component));
-  return domain->dimension == 2 ? !(off & torque_off(2)) : (off & NO_TORQUE) != NO_TORQUE;
-}
 
 bigint Temperature::atoms_outside() const
 {
@@ -192,8 +184,8 @@ void Temperature::begin()
   for (auto &sum : sums) sum = ExactSumOf<Lanes>();
 }
 
-GEAR_QUAT_INLINE void Temperature::add_to(ExactSumOf<Lanes> *sums, const Moving &moving,
-                                          const Wanted &wanted)
+GEAR_QUAT_VARIANTS void Temperature::add_to(ExactSumOf<Lanes> *sums, const Moving &moving,
+                                            const Wanted &wanted)
 {
   Lanes rotation = {}, p[3];
   for (int k = 0; k < 3; ++k) {
@@ -207,12 +199,6 @@ GEAR_QUAT_INLINE void Temperature::add_to(ExactSumOf<Lanes> *sums, const Moving 
   for (int k = 0; wanted.tensor && k < Upper::SIZE; ++k)
     sums[TENSOR + k].add(p[Upper::ROW[k]] * moving.velocities.linear[Upper::COLUMN[k]],
                          wanted.energies);
-}
-
-GEAR_QUAT_FOR_AVX2 void Temperature::add_avx2(ExactSumOf<Lanes> *sums, const Moving &moving,
-                                              const Wanted &wanted)
-{
-  add_to(sums, moving, wanted);
 }
 
 void Temperature::add(int count, const int *ids, const Velocities &velocities)
@@ -237,7 +223,7 @@ void Temperature::add(int count, const int *ids, const Velocities &velocities)
       if (!has(ibody, ROTATION)) set(moving.inertia[k], lane, 0.0);
     }
   }
-  has_avx2() ? add_avx2(sums, moving, wanted) : add_to(sums, moving, wanted);
+  add_to(sums, moving, wanted);
 }
 
 bool Temperature::has_flow() const

@@ -28,6 +28,7 @@
 #ifndef LMP_GEAR_QUAT_TEMPERATURE_H
 #define LMP_GEAR_QUAT_TEMPERATURE_H
 
+#include "domain.h"
 #include "gear_quat_arguments.h"
 #include "gear_quat_bodies.h"
 #include "gear_quat_cell.h"
@@ -79,7 +80,12 @@ class Temperature : protected Pointers {
   bool is_counted() const;
   /// True if that momentum has a temperature, apart from the total momentum.  In two dimensions
   /// bodies turn only about z.
-  bool has(int ibody, Part part, int component = 0) const;
+  bool has(int ibody, Part part, int component = 0) const
+  {
+    const Mask off = bodies.body_at(ibody).off;
+    if (part == TRANSLATION) return component < domain->dimension && !(off & force_off(component));
+    return domain->dimension == 2 ? !(off & torque_off(2)) : (off & NO_TORQUE) != NO_TORQUE;
+  }
 
   // sums over bodies: begin(), add() for owned bodies, and the collective sum()
 
@@ -136,7 +142,6 @@ class Temperature : protected Pointers {
   };
 
   static void add_to(ExactSumOf<Lanes> *sums, const Moving &moving, const Wanted &wanted);
-  static void add_avx2(ExactSumOf<Lanes> *sums, const Moving &moving, const Wanted &wanted);
 
   std::string find_outside() const;
   void find_start();

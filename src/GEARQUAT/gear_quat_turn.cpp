@@ -112,10 +112,10 @@ void Series::find(int terms, int order)
 }
 
 /// W(q) (p - (0, 0, 0, 1)) at the end, with the terms of each lane.
-template <class Orders>
-static GEAR_QUAT_INLINE void find_changes(const Orders &orders, int count,
-                                          const RigidBody *const *bodies, const double *const *rows,
-                                          int stride, double (*change)[4])
+GEAR_QUAT_VARIANTS static void find_changes(const Turn::Orders &orders, int count,
+                                            const RigidBody *const *bodies,
+                                            const double *const *rows, int stride,
+                                            double (*change)[4])
 {
   Series series;
   series.begin(count, bodies, rows, stride, orders.terms);
@@ -147,14 +147,6 @@ static GEAR_QUAT_INLINE void find_changes(const Orders &orders, int count,
     for (int i = 0; i < 4; ++i) change[body][i] = get(turned[i], body);
 }
 
-template <class Orders>
-GEAR_QUAT_FOR_AVX2 static void
-find_changes_avx2(const Orders &orders, int count, const RigidBody *const *bodies,
-                  const double *const *rows, int stride, double (*change)[4])
-{
-  find_changes(orders, count, bodies, rows, stride, change);
-}
-
 /// The series of a free asymmetric top has a finite radius of convergence: its error is about
 /// (angle/4)^(order + 1).
 Turn::Turn(int terms, int least, double accuracy)
@@ -170,10 +162,7 @@ Turn::Turn(int terms, int least, double accuracy)
 void Turn::changes(int count, const RigidBody *const *bodies, const double *const *rows, int stride,
                    double (*change)[4]) const
 {
-  if (has_avx2())
-    find_changes_avx2(orders, count, bodies, rows, stride, change);
-  else
-    find_changes(orders, count, bodies, rows, stride, change);
+  find_changes(orders, count, bodies, rows, stride, change);
 }
 
 /// Rows for changes(), with a stride of 4.

@@ -30,6 +30,18 @@ namespace LAMMPS_NS::GearQuat {
 class Turn {
  public:
   static constexpr int MOST = 24;    ///< order of the series, and terms of L
+  /// The orders of bodies.
+  struct Orders {
+    int terms, least;
+    double fastest[MOST + 1];    ///< squared angle of a step up to which an order is sufficient
+
+    int of(double angle2) const
+    {
+      int order = least;
+      while (order < MOST && angle2 > fastest[order]) ++order;
+      return order;
+    }
+  };
   /// The coefficients of h L(t) along the axes of space.
   using Momentum = double[MOST][3];
 
@@ -54,18 +66,7 @@ class Turn {
                            const double *q, double (*found)[4]);
 
  private:
-  /// The orders of bodies.
-  struct Orders {
-    int terms, least;
-    double fastest[MOST + 1];    ///< squared angle of a step up to which an order is sufficient
-
-    int of(double angle2) const
-    {
-      int order = least;
-      while (order < MOST && angle2 > fastest[order]) ++order;
-      return order;
-    }
-  } orders;
+  Orders orders;
 };
 
 }    // namespace LAMMPS_NS::GearQuat
