@@ -45,7 +45,7 @@ inline double get(const double &a, int /*lane*/)
   return a;
 }
 
-#if defined(__GNUC__) && defined(__x86_64__) && defined(__GLIBC__)
+#if defined(__GNUC__) && defined(__x86_64__) && defined(__GLIBC__) && !defined(__SANITIZE_THREAD__)
 #define GEAR_QUAT_VARIANTS __attribute__((target_clones("avx2", "default"), flatten))
 #else
 #define GEAR_QUAT_VARIANTS
