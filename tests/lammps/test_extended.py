@@ -11,12 +11,14 @@ from support.extended_atoms import (
     deck,
     ellipsoid,
     equivalent_points,
+    from_corners,
     line,
     matrix,
     quat,
     sphere,
     triangle,
     words,
+    write_triangles,
 )
 from support.scenes import last_frame, last_numbers
 from scipy.spatial.transform import Rotation
@@ -27,6 +29,14 @@ ORIGIN, RIGHT, ABOVE = np.array([(0, 0, 0), (1, 0.2, 0), (0, 1.1, 0.4)])
 POINT = Atom(ORIGIN, 1.0)
 TILT = (0, 1, 3), -130.0  # axis and angle
 
+#: corners of two triangles without symmetry, whose frame for LAMMPS, of moments about the origin, is not principal
+CORNERS = np.array([
+    [(0.9, 0.1, -0.3), (2.6, 0.4, 0.2), (1.3, 1.9, 0.6)],
+    [(-0.4, 0.8, 0.1), (0.3, 2.2, 1.4), (0.2, 0.7, 1.9)],
+])  # fmt: skip
+#: an equilateral triangle has no preferred axes in its plane
+EQUILATERAL = np.array([CORNERS[0], [(0.0, 1.0, 1.0), (1.0, 0.0, 1.0), (1.0, 1.0, 0.0)]])
+FAR = np.array([6.0, -4.0, 3.0])
 # style, and a body of a point and two extended sites
 BODIES = {
     "spheres": ("sphere", [POINT, sphere(RIGHT, 2.0, 0.6), sphere(ABOVE, 0.7, 1.3)]),
@@ -39,8 +49,20 @@ BODIES = {
         ],
     ),
     "triangles": ("tri", [POINT, triangle(RIGHT, 2.0, 1.7), triangle(ABOVE, 0.7, 2.4, *TILT)]),
+    "data": ("tri", [POINT, *map(from_corners, CORNERS, (1.3, 0.4))]),
+    "far data": ("tri", [Atom(FAR, 1.0), *map(from_corners, CORNERS + FAR, (1.3, 0.4))]),
+    "equilateral data": ("tri", [POINT, *map(from_corners, EQUILATERAL, (1.3, 0.4))]),
     "lines": ("line", [POINT, line(RIGHT, 2.0, 1.7, 40.0), line((0, 1.1, 0), 0.7, 2.1, -160)]),
 }
+
+
+@pytest.fixture(autouse=True)
+def data(tmp_path):
+    """The files of the bodies from data files."""
+    for name, (_, atoms) in BODIES.items():
+        if "data" in name:
+            write_triangles(tmp_path / name, atoms, 20)
+    write_triangles(tmp_path / "small data", BODIES["data"][1], 5)
 
 
 def on_both(word, names):
@@ -54,6 +76,7 @@ def a_body(name, sites=None, **settings):
     """A deck of the body of that name, or of other sites with the same motion; lines in two dimensions."""
     style, atoms = BODIES[name]
     settings["dimension"] = 2 if name == "lines" else 3
+    settings["data"] = f"'{name}'" if "data" in name and not sites else ""
     return body_deck(style, sites or atoms, spin(name), **settings)
 
 
@@ -118,7 +141,7 @@ def test_the_motion_is_that_of_equivalent_points(lmp_tree, name, formulation):
         text = a_body(name, sites, velocity=(0.3, -0.2, 0.0), fix=fix, after=SPRING)
         return end(lmp_tree, text)[0, 1:7]
 
-    sized = move(*atoms)
+    sized = move(*([] if "data" in name else atoms))
     points = [point for atom in atoms[1:] for point in equivalent_points(atom)]
     assert np.abs(sized - move(atoms[0], *points)).max() < 1e-10
     assert np.abs(sized - move(*(Atom(a.x, a.mass) for a in atoms))).max() > 1e-2
@@ -144,6 +167,10 @@ def test_orientations_and_rates_follow_the_body(lmp_tree, name):
             assert np.abs(matrix(site[10:14]) - own @ matrix([1, 0.005, 0, 0])).max() > 1e-3
         elif style == "tri":
             assert site[7:10] == pytest.approx(rate, abs=1e-12)
+            if atom.corners is not None:
+                expected = (atom.corners[:2] - atom.corners.mean(axis=0)) @ turn.T
+                assert np.abs(site[10:16].reshape(2, 3) - site[1:4] - expected).max() < 1e-12
+                continue
             # corners of an equilateral triangle, the first at -60 degrees from its own x axis
             arms = (site[10:16].reshape(2, 3) - site[1:4]) @ own
             assert np.abs(arms[:, 2]).max() < 1e-12
@@ -295,27 +322,41 @@ PERIODIC = dict(boundary="p p p", box="-2.6 2.6 -2.6 2.6 -2.6 2.6")
 DRIFT = "\nvelocity all set 0.6 0.4 0.5 sum yes\ncomm_modify vel yes"
 
 
-@pytest.mark.parametrize("kind", ["dipoles", "ellipsoids"])
+@pytest.mark.parametrize("kind", ["dipoles", "ellipsoids", "data"])
 def test_ranks(lmp_tree, kind):
     """The same motion on 1, 2 and 4 ranks with migrating bodies, to rounding."""
-    settings = dict(PERIODIC, steps=600, before=DRIFT, columns="ix iy iz")
-    text = clustered(kind, 8, 2.2, after="neigh_modify every 1 delay 0 check yes", **settings)
+    if kind == "data":
+        box = dict(boundary="p p p", box="-5 5 -5 5 -5 5", data="'small data'")
+        before = "\nvelocity all set 0.9 0.6 0.8 sum yes\ncomm_modify vel yes cutoff 6"
+        text = body_deck("tri", BODIES["data"][1], OMEGA, steps=1500, dt=0.01, before=before, columns="ix iy iz", **box)
+    else:
+        settings = dict(PERIODIC, steps=600, before=DRIFT, columns="ix iy iz")
+        text = clustered(kind, 8, 2.2, after="neigh_modify every 1 delay 0 check yes", **settings)
     ends = [end(lmp_tree, text, ranks) for ranks in (1, 2, 4)]
     for other in ends:
         assert (other[:, -3:] != 0).any()  # at least one atom has crossed the boundary
         assert np.abs(other - ends[0]).max() < 1e-10
 
 
-@pytest.mark.parametrize("kind, ranks, formulation", [("dipoles", 2, "momentum"), ("ellipsoids", 1, "second"), ("ellipsoids", 2, "first")])
+@pytest.mark.parametrize(
+    "kind, ranks, formulation",
+    [
+        ("dipoles", 2, "momentum"),
+        ("ellipsoids", 1, "second"),
+        ("ellipsoids", 2, "first"),
+        ("far data", 1, "momentum"),
+        ("equilateral data", 2, "second"),
+    ],
+)
 def test_restart_is_exact(lmp_tree, kind, ranks, formulation):
-    fix = f"custom v_pair formulation {formulation}"
-    halves = "run 20\nwrite_restart half\nrun 20"
-    whole = clustered(kind, fix=fix, steps=40, run=halves)
+    style = "single" if "data" in kind else "custom v_pair"
+    settings = dict(fix=f"{style} formulation {formulation}", steps=40, run="run 20\nwrite_restart half\nrun 20")
+    whole = a_body(kind, after=SPRING, **settings) if "data" in kind else clustered(kind, **settings)
     straight = end(lmp_tree, whole, ranks)
     head, _, rest = whole.partition("fix move")
     pair = head[head.index("pair_style") :]
     again = "atom_modify map array sort 0 0.0\nread_restart half\n" + pair + "fix move" + rest
-    assert (end(lmp_tree, again.replace(halves, "run 20"), ranks) == straight).all()
+    assert (end(lmp_tree, again.replace(settings["run"], "run 20"), ranks) == straight).all()
 
 
 @pytest.mark.parametrize(
@@ -333,9 +374,12 @@ def test_changes_between_runs_are_seen(lmp_tree, command):
     assert ("bodies are rebuilt" in lmp_tree.succeed(text).log) == bool(command)
 
 
-def test_turned_ellipsoids_are_seen(lmp_tree):
-    for command in ("", "set atom 1 quat 1 0 0 30"):
-        text = clustered("ellipsoids", steps=5, run=f"run 5\n{command}\nrun 5")
+@pytest.mark.parametrize("kind", ["ellipsoids", "far data"])
+def test_turned_atoms_are_seen(lmp_tree, kind):
+    """Triangles match their records, whose frame is not LAMMPS' frame, unless they were changed."""
+    for command in ("", "set atom 2 quat 1 0 0 30" if "data" in kind else "set atom 1 quat 1 0 0 30"):
+        settings = dict(steps=5, run=f"run 5\n{command}\nrun 5")
+        text = a_body(kind, after=SPRING, **settings) if "data" in kind else clustered(kind, **settings)
         assert ("bodies are rebuilt" in lmp_tree.succeed(text).log) == bool(command)
 
 

@@ -61,6 +61,7 @@ class Atom:
     moments: tuple = (0.0, 0.0, 0.0)
     turn: np.ndarray = field(default_factory=lambda: np.eye(3))
     charge: float = 0.0
+    corners: np.ndarray | None = None  # of a triangle in a data file, in space
 
     @property
     def inertia(self) -> np.ndarray:
@@ -101,6 +102,30 @@ def triangle(x, mass, side, axis=AXIS, degrees=TURN):
     return shaped(x, mass, moments, rotation(axis, degrees), f"tri {words(side)}", quat(axis, degrees))
 
 
+def from_corners(corners, density):
+    """A triangle of a data file.  Midpoints of edges, with equal weights, give its exact tensor."""
+    mass = density * np.linalg.norm(np.cross(corners[1] - corners[0], corners[2] - corners[0])) / 2
+    arms = (corners + np.roll(corners, 1, axis=0)) / 2 - corners.mean(axis=0)
+    moments, turn = np.linalg.eigh(mass / 3 * sum(arm @ arm * np.eye(3) - np.outer(arm, arm) for arm in arms))
+    turn[:, 2] *= np.linalg.det(turn)
+    return Atom(tuple(corners.mean(axis=0)), mass, moments=tuple(moments), turn=turn, corners=corners)
+
+
+def write_triangles(path, atoms, edge):
+    """A data file of those atoms that have corners, in a cube around the origin."""
+    rows = [atom for atom in atoms if atom.corners is not None]
+    densities = [a.mass / np.linalg.norm(np.cross(*(a.corners[1:] - a.corners[0]))) * 2 for a in rows]
+    sections = [
+        f"triangles\n\n{len(rows)} atoms\n{len(rows)} triangles\n1 atom types",
+        "\n".join(f"{-edge} {edge} {axis}lo {axis}hi" for axis in "xyz"),
+        "Atoms",
+        "\n".join(f"{n} 0 1 1 {words(d, *a.x)}" for n, (a, d) in enumerate(zip(rows, densities), 1)),
+        "Triangles",
+        "\n".join(f"{n} {words(*a.corners.ravel())}" for n, a in enumerate(rows, 1)),
+    ]
+    path.write_text("\n\n".join(sections) + "\n")
+
+
 def line(x, mass, length, degrees):
     moment = mass * length**2 / 12
     moments, turn = (0.0, moment, moment), rotation((0, 0, 1), degrees)
@@ -133,12 +158,14 @@ def inertia(atoms: list[Atom]) -> np.ndarray:
     return total
 
 
-def body_deck(style: str, atoms: list[Atom], omega, velocity=(0, 0, 0), **settings) -> str:
-    """A deck of one rigidly moving body; settings: as in `deck`."""
+def body_deck(style: str, atoms: list[Atom], omega, velocity=(0, 0, 0), data="", **settings) -> str:
+    """A deck of one rigidly moving body; data: the file of its triangles; settings: as in `deck`."""
     _, columns, point = STYLES[style]
-    lines = [f"create_atoms 1 single {words(*a.x)}" for a in atoms]
+    lines = [f"create_atoms 1 single {words(*a.x)}" for a in atoms if a.corners is None]
+    lines += [f"read_data {data} add append"] if data else []
     for i, a in enumerate(atoms, 1):
-        lines.append((a.commands or point).format(i=i, m=a.mass))
+        if a.corners is None:
+            lines.append((a.commands or point).format(i=i, m=a.mass))
         vx, vy, vz = velocity + np.cross(omega, a.x - center(atoms))
         lines.append(f"set atom {i} vx {words(vx)} vy {words(vy)} vz {words(vz)}")
         if a.charge:
