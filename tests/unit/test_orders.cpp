@@ -1,12 +1,11 @@
 /* The order for every number of values, from slopes: of the position in the paper's cage and of an
-   oscillator, of the orientation of the free top and of a rod.  With many values sums are
+   oscillator, of the orientation of the free top.  With many values sums are
    compensated, to delay the onset of rounding; the steps of each slope are in the asymptotic
    range. */
 
 #include "scenes.h"
 
 using namespace Drive;
-using Check::smallest;
 
 namespace {
 
@@ -25,10 +24,18 @@ Scheme compensated(Formulation formulation, int values, int passes = 1)
   return scheme_of(formulation, values, passes, true);
 }
 
-const vector<Scheme> PAPER = {scheme_of(FIRST), scheme_of(SECOND),
-                              with_velocity_c0(scheme_of(SECOND))};
-
 }    // namespace
+
+TEST(Orders, FollowsTheReferencesInTheCage)
+{
+  for (const CageReference &reference : CAGE_REFERENCES)
+    for (Formulation formulation : {FIRST, SECOND}) {
+      const CageScene scene(reference.test_case, reference.consistent);
+      EXPECT_LT(error(cage(scene, reference), scheme_of(formulation), 0.02, 0.05),
+                formulation == FIRST ? 1e-7 : 1e-9)
+          << "case " << reference.test_case << ", t = " << reference.time;
+    }
+}
 
 // required for every N from 5 on: the odd one of N and N + 1, minus 0.4, until rounding
 
@@ -105,17 +112,6 @@ TEST(Orders, OscillatorHasOrderN)
   }
 }
 
-TEST(Orders, OscillatorWithThePapersValues)
-{
-  const vector<double> h = Check::halvings(0.1, 3);
-  for (const Scheme &scheme : PAPER) {
-    const bool six = !scheme.first() && !scheme.velocity_c0;
-    EXPECT_GT(smallest(error_slopes(oscillator(10.0), scheme, h, 0.05)), six ? 5.8 : 4.7);
-    // the velocity row of the second formulation has an error of order 5 with either c_0
-    EXPECT_GT(smallest(error_slopes(oscillator(10.0, 1.0, true), scheme, h, 0.05)), 4.7);
-  }
-}
-
 // the free top: N in the first formulation, N - 1 in the second, for any number of passes.  For
 // even numbers the slope approaches this from up to one above.
 
@@ -136,31 +132,4 @@ TEST(Orders, OrientationOfTheFreeTop)
       EXPECT_GT(p, order - 0.5) << scheme;
       EXPECT_LT(p, order + (order % 2 ? 0.3 : 1.05)) << scheme;
     }
-}
-
-TEST(Orders, RodTurnsUniformlyAndUnderTorque)
-{
-  // torque along body x, no initial rotation about y and z: angle = omega t + torque/(2 I) t^2
-  const double omega = 1.5, time = 4.0;
-  const vector<double> h = Check::halvings(0.05, 4);
-  for (int none : {1, 2})    // the axis without inertia
-    for (double torque : {0.0, 0.9})
-      for (const Scheme &scheme : PAPER) {
-        Scene rod = {{1.0, {2.0, 2.0, 2.0}}, {}, {}, time, {}};
-        rod.body.inertia[none] = 0.0;
-        rod.start.q[3] = 1.0;
-        rod.start.omega_body[0] = omega;
-        rod.load = constant({{}, {torque, 0.0, 0.0}});    // x of the body stays x of space
-        rod.missed = [=](const BodyState &s) {
-          const double angle = omega * time + 0.5 * torque / 2.0 * time * time;
-          const double q[4] = {std::sin(angle / 2), 0.0, 0.0, std::cos(angle / 2)};
-          const double w = omega + torque / 2.0 * time;
-          return std::max(Check::quaternion_distance(q, s.q), std::fabs(s.omega_body[0] - w));
-        };
-        const vector<double> e = errors(rod, scheme, h, 0.05);
-        // over the whole range: terms of order 5 and 6 of opposite sign make single slopes
-        // irregular here
-        EXPECT_GT(Check::slopes({h[0], h[3]}, {e[0], e[3]})[0], 4.7) << scheme;
-        EXPECT_LT(e.back(), 1e-11);
-      }
 }

@@ -84,27 +84,6 @@ TEST(Passes, WithManyValuesOneIsUnstableAndTwoAreNot)
   }
 }
 
-TEST(Passes, TranslationIsLeftAlone)
-{
-  for (const bool compensate : {false, true})
-    for (const Scheme &scheme : every_scheme(1, compensate)) {
-      vector<vector<double>> rows;
-      for (int passes : {1, 4}) {
-        Motion motion(TOP, top_state(0.0), some_load, passing(scheme, passes), 0.1,
-                      Start::BOOTSTRAP, 0.1);
-        motion.step();
-        rows.push_back(motion.history);
-      }
-      bool turned = false;
-      for (int k = 0; k < scheme.size(); ++k)
-        if (k % scheme.width() < scheme.quaternion())
-          EXPECT_EQ(rows[0][k], rows[1][k]) << scheme;
-        else
-          turned = turned || rows[0][k] != rows[1][k];
-      EXPECT_TRUE(turned);
-    }
-}
-
 TEST(Passes, ManySolveTheEquationsOfTheStep)
 {
   for (const Scheme &scheme : every_scheme()) {
