@@ -5,8 +5,8 @@ import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from gearquat_analysis.pictures import named, picture
-from gearquat_analysis.style import COLOR
 from gearquat_analysis.tables import rounded
+from gearquat_analysis.units import UNITS
 
 from .trials import NORMS
 
@@ -128,43 +128,15 @@ def draw_drifts(path, deck, answer):
 DOTS = 20_000
 
 
-def draw_deflection(path, name, columns, plan, units):
-    """Deflection against impact parameter, by energy; orbiting flights are rings."""
+def draw_deflection(path, name, columns, plan, style):
+    """Deflection against impact parameter, by energy."""
     parted = np.flatnonzero(columns["fate"] == "parted")[:DOTS]
     b, angle, energy = (columns[key][parted] for key in ("b", "angle", "energy"))
-    orbiting = columns["turnings"][parted] > 1
     with picture(path, f"Deflection: {name}", figsize=(8, 5)) as (figure, axis):
-        dots = axis.scatter(b[~orbiting], np.degrees(angle[~orbiting]), s=3, c=energy[~orbiting], cmap="viridis")
-        rings = {"s": 16, "facecolors": "none", "edgecolors": COLOR["first"], "linewidths": 0.7}
-        axis.scatter(b[orbiting], np.degrees(angle[orbiting]), label=f"orbiting ({orbiting.sum()})", **rings)
-        if plan.energy is None:
+        dots = axis.scatter(b, np.degrees(angle), s=3, c=energy, cmap="viridis")
+        if not plan.energy:
             figure.colorbar(dots, ax=axis, label="energy of the relative translation (units of the script)")
-        axis.set_xlim(0, plan.largest)
+        axis.set_xlim(0, min(3 * plan.size(plan.scale), plan.largest))
         axis.set_ylim(0, 180)
-        axis.set_xlabel(named("impact parameter", units.length))
+        axis.set_xlabel(named("impact parameter", UNITS[style].length))
         axis.set_ylabel("deflection (degrees)")
-        axis.legend(loc="upper right")
-
-
-def draw_convergence(path, name, shown):
-    """Values with standard errors, divided by the last values, and the errors, against the number of flights.
-
-    ``shown``: words for a condition -> what ``results.convergence`` returns, of one or two conditions.
-    """
-    colors, lines = (COLOR["momentum"], COLOR["first"]), ("-", ":")
-    with picture(path, f"Convergence: {name}", ncols=2, figsize=(10, 4)) as (_, (left, right)):
-        for (words, (numbers, series)), line in zip(shown.items(), lines):
-            for (label, (values, errors)), color in zip(series.items(), colors):
-                label = f"{label}, {words}" if len(shown) > 1 else label
-                look = {"color": color, "linestyle": line, "marker": "o", "markersize": 3, "label": label}
-                last = values[-1]
-                left.errorbar(numbers, values / last - 1.0, errors / abs(last), **look)
-                right.loglog(numbers, errors / abs(last), **look)
-        left.set_xscale("log")
-        left.set_ylabel("relative difference from the last value")
-        right.set_ylabel("relative standard error")
-        _ticks(right.yaxis)
-        for axis in (left, right):
-            _ticks(axis.xaxis)
-            axis.set_xlabel("flights")
-            axis.legend()

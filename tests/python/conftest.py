@@ -8,7 +8,6 @@ import pytest
 
 from benchmarks.engine import series
 from benchmarks.engine.decks import deck
-from lammps_gearquat.scatter import pilots
 
 
 @pytest.fixture
@@ -35,9 +34,3 @@ def run_case(run_scene):
 def make_deck(tmp_path):
     """``make_deck(extra="", old=new …)``: path of the deck of clumps.py, with commands before its run."""
     return functools.partial(clumps.write, tmp_path)
-
-
-@pytest.fixture
-def few_pilots(monkeypatch):
-    """A pilot flight in each cell instead of four, for tests in which the plan of the flights does not matter."""
-    monkeypatch.setattr(pilots, "ALONG", 1)

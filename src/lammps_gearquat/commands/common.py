@@ -70,7 +70,7 @@ def deck_options(function):
 
 def results_folder(out, scene, options, names, **more):
     """Folder for the files ``names`` with the results of a scene of ``deck_options``.  Raises DeckError if it has others."""
-    reading = {"var": scene["variables"], "without": scene["without"], "run": scene["which"], "ranks": scene["ranks"]}
+    reading = {"var": scene["variables"], "without": scene["without"], "run": scene["which"], "ranks": scene.get("ranks", 1)}
     try:
         return Folder(out, scene["path"], reading | options, names, "deck", more)
     except ValueError as error:

@@ -21,7 +21,6 @@ from gearquat_analysis.units import UNITS
 from ..trials import process
 from ..trials.interpreter import Interpreter
 from ..trials.script import DeckError
-from .track import STEPS, Track
 
 #: a flight begins and ends this factor beyond the range of the forces: several first steps, because the derivatives at
 #: the start do not include a force that sets in within the step
@@ -30,15 +29,17 @@ MARGIN = 1.05
 FIRST_STEP, FIRST_TURN = 0.01, 0.05
 #: parts of the sum of all forces that count as rounding, if the force on a body should be zero
 ROUNDING = 1e-12
-#: keywords of the fix for positions of bodies and forces on them, which the command sets itself
-REFUSED_KEYWORDS = ("infile", "mol", "force", "torque")
+#: keywords of the fix for positions of bodies and forces on them, which the command sets itself, and for thermostats
+REFUSED_KEYWORDS = ("infile", "mol", "force", "torque", "temp")
 #: fixes that neither move atoms nor exert forces
 IDLE = re.compile(r"property/atom|store/.*|dt/reset")
 #: properties of atoms that turn with a body and that a flight would have to place
 EXTENDED = ("radius", "mu", "ellipsoid", "line", "tri", "body")
 UNTURNED = (1.0, 0.0, 0.0, 0.0)
-#: ID of the dump of a flight
-DUMP = "gearquat_flight"
+#: steps between two looks at the distance of the bodies
+STEPS = 15
+#: number of poses and of distances, and the highest energy, of which the envelope of the potential consists
+POSES, DISTANCES, HIGHEST = 4, 200, 1e100
 _CUTOFF = re.compile(r"master list distance cutoff = (\S+)")
 
 
@@ -52,25 +53,17 @@ class Start:
     quaternion: np.ndarray
     momentum: np.ndarray
 
-    def reversed(self):
-        """The same poses with all velocities reversed."""
-        return replace(self, velocity=-self.velocity, momentum=-self.momentum)
-
 
 @dataclass(frozen=True)
 class End(Start):
     """The bodies after a flight, and a summary of the flight.
 
-    ``time`` since the start; numbers of ``steps`` and ``repeats``; ``turnings``, how often the
-    radial velocity had changed its sign, and ``closest``, the smallest distance, see track.py.
-    ``fate`` is "parted", or "unparted" after the allowed number of steps, or "lost" if LAMMPS ended the flight with ``message``.
+    ``time`` since the start; number of ``steps``.  ``fate`` is "parted", or "unparted" after the allowed number of
+    steps, or "lost" if LAMMPS ended the flight with ``message``.
     """
 
     time: float
     steps: int
-    repeats: int
-    turnings: int
-    closest: float
     fate: str = "parted"
     message: str = ""
 
@@ -81,14 +74,6 @@ def cross(a, b):
     return a[..., first] * b[..., second] - a[..., second] * b[..., first]
 
 
-def open_pair(path, variables=(), without=(), which=None, say=lambda text: None):
-    """The Pair of a deck, to be used in a with statement.
-
-    ``variables``, ``without`` and ``which`` as in ``trials.measure.Deck``.  Raises DeckError.
-    """
-    return Pair(path, variables, without, which, say)
-
-
 class Pair:
     """Two rigid bodies of a deck in a LAMMPS of this process.
 
@@ -96,7 +81,10 @@ class Pair:
     sites act on each other; ``extent`` (2,), the largest distance of a site from its center; ``reach``, the distance
     of the centers at which flights begin and end. ``units``, a row of UNITS, and ``style``, its name;
     ``freedoms`` (2,), of rotation; ``turning``, whether bodies have more than one site; ``charge`` (2,) if atoms
-    have one, else None; ``text``, the commands that lead to the run.
+    have one, else None.
+
+    ``variables``, ``without``, ``which`` and ``say`` as in ``trials.measure.Deck``.  Use it in a with statement.  Raises
+    DeckError.
     """
 
     def __init__(self, path, variables=(), without=(), which=None, say=lambda text: None):
@@ -126,11 +114,8 @@ class Pair:
             try:
                 log = Path(folder) / "log"
                 self.lammps = process.open_lammps(self.path, self.variables, log)
-                follower = Interpreter(
-                    self.lammps, Path(folder), self.without, self.which, self.variables, self.say
-                )
+                follower = Interpreter(self.lammps, Path(folder), self.without, self.which, self.variables, self.say)
                 start = follower.follow(self.path.name)
-                self.text = [command.text for command in start.commands]
                 self._check(start)
                 self._bodies()
                 self._prepare(log)
@@ -147,15 +132,10 @@ class Pair:
         movers = [command.mover for command in start.commands if command.mover]
         if len(movers) != 1 or movers[0].style != "gear/quat":
             found = ", ".join(f"{line.id} {line.style}" for line in movers)
-            raise DeckError(
-                f"one fix gear/quat that moves both bodies is required, and no other; the deck has {found}"
-            )
+            raise DeckError(f"one fix gear/quat that moves both bodies is required, and no other; the deck has {found}")
         line = movers[0]
         given = dict(line.keywords)
         who = f"fix {line.id} {line.style}"
-        if "temp" in given:
-            instead = "" if "tolerance" in given else ", and 'tolerance 1e-9 energy' put in its place"
-            raise DeckError(f"{who}: keyword temp has to be left out{instead}: flights have no thermostat")
         if "tolerance" not in given:
             raise DeckError(
                 f"{who}: keyword tolerance is required, such as 'tolerance 1e-9 energy': only with it does the step"
@@ -163,7 +143,9 @@ class Pair:
             )
         for key in REFUSED_KEYWORDS:
             if key in given:
-                raise DeckError(f"{who}: keyword {key} has to be left out, because the command places the bodies")
+                raise DeckError(
+                    f"{who}: keyword {key} has to be left out: the command places the bodies, and nothing else acts on them"
+                )
         for id_, style in start.fixes.items():
             if id_ != line.id and not IDLE.fullmatch(style):
                 raise DeckError(
@@ -180,8 +162,6 @@ class Pair:
             raise DeckError("dimension 3 is required")
         if any(lammps.extract_box()[5]):
             raise DeckError("the box is periodic: boundary s s s is required, so that bodies meet once and part")
-        if any(text.split()[0] == "kspace_style" and "none" not in text for text in self.text if text.split()):
-            raise DeckError("forces of kspace_style do not vanish: a pair style with a cutoff is required")
         extended = [name for name in EXTENDED if lammps.extract_atom(name)]
         if extended:
             raise DeckError(
@@ -194,14 +174,12 @@ class Pair:
         labels = process.body_labels(lammps, [self.line])
         if (labels[:, 0] < 0).any():
             outside = (labels[:, 0] < 0).sum()
-            raise DeckError(
-                f"{outside} atoms are in no body of fix {self.line.id}: the two bodies have to be alone"
-            )
+            raise DeckError(f"{outside} atoms are in no body of fix {self.line.id}: the two bodies have to be alone")
         values = np.unique(labels[:, 1])
         if len(values) != 2:
             raise DeckError(f"two bodies are required: fix {self.line.id} has {len(values)}")
         self.bodies = Bodies(np.searchsorted(values, labels[:, 1]) + 1, process.of_atoms(lammps, "mass"))
-        bodies, self._tags = self.bodies, lammps.numpy.extract_atom("id")[: len(labels)].copy()
+        bodies, self._tags = (self.bodies, lammps.numpy.extract_atom("id")[: len(labels)].copy())
         positions = lammps.numpy.extract_atom("x")[bodies.index].copy()
         bodies.set_shape(positions)
         self.extent = bodies.largest(np.linalg.norm(bodies.shape, axis=1))
@@ -216,9 +194,6 @@ class Pair:
         self._kinds = np.column_stack([types if charges is None else charges, types])[bodies.index]
         self.weights = np.zeros((2, len(bodies.index)))
         self.weights[bodies.of, bodies.index] = bodies.masses / bodies.mass[bodies.of]
-        # forces on sites to accelerations of centers
-        self._pulls = np.zeros_like(self.weights)
-        self._pulls[bodies.of, bodies.index] = 1.0 / (bodies.mass[bodies.of] * self.units.energy)
 
     @property
     def identical(self):
@@ -253,8 +228,7 @@ class Pair:
         # neighbor lists are never rebuilt, because they contain all pairs of sites
         lammps.command(f"neighbor {6.0 * self.reach:.17g} nsq")
         self._command_of_fix = replace(
-            self.line,
-            keywords=(*(pair for pair in self.line.keywords if pair[0] != "report"), ("report", ("no",))),
+            self.line, keywords=(*(pair for pair in self.line.keywords if pair[0] != "report"), ("report", ("no",)))
         ).text()
 
     def _command(self, text):
@@ -262,9 +236,7 @@ class Pair:
         try:
             self.lammps.command(text)
         except Exception as error:  # the only exception class that LAMMPS' module raises
-            raise DeckError(
-                f"LAMMPS refuses '{text}': {str(error).split(chr(10) + 'Last input line')[0]}"
-            ) from error
+            raise DeckError(f"LAMMPS refuses '{text}': {str(error).split(chr(10) + 'Last input line')[0]}") from error
 
     def _check_forces(self):
         """Refuse forces that act where a flight begins."""
@@ -281,16 +253,24 @@ class Pair:
                     f" the cutoff of {self.cutoff:.6g}; a pair style with a cutoff is required, and nothing else may act"
                 )
 
-    def interaction(self, quaternion, distance):
-        """(energy, force along z on the second body) of bodies at rest whose centers have this distance along z.
-
-        Energies have the same constant at all distances; ``quaternion`` (2, 4).
-        """
-        apart = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, distance]])
-        self._place(Start(apart, np.zeros((2, 3)), quaternion, np.zeros((2, 3))))
-        self._command("run 0 post no")
-        forces = self.lammps.numpy.extract_atom("f")[self.bodies.index]
-        return self.lammps.extract_compute("thermo_pe", 0, 0), float(self.bodies.sum(forces)[1, 2])
+    def envelope(self):
+        """Distances (n,), falling, and the largest potential energy (n,) beyond each of bodies at rest: the root of the
+        mean square over poses."""
+        turns = Rotation.random(2 * POSES, random_state=np.random.default_rng(2)).as_quat(scalar_first=True)
+        distances, still, squares = (np.linspace(self.reach, 0.0, DISTANCES, endpoint=False), np.zeros((2, 3)), 0.0)
+        for pose in turns.reshape(POSES, 2, 4):
+            energies = []
+            for distance in distances:
+                self._place(Start(np.array([[0.0, 0.0, 0.0], [0.0, 0.0, distance]]), still, pose, still))
+                self._command("run 0 post no")
+                energies.append(self.lammps.extract_compute("thermo_pe", 0, 0))
+            energies = np.abs(np.array(energies) - energies[0])
+            squares = squares + np.maximum.accumulate(np.nan_to_num(energies, nan=np.inf)).clip(max=HIGHEST) ** 2
+        if not squares[-1]:
+            raise DeckError(
+                "the bodies exert no forces on each other: a pair style whose coefficients are not zero is required"
+            )
+        return distances, np.sqrt(squares / POSES)
 
     # --- flights ----------------------------------------------------------------------------------
     def turned(self, quaternion, vectors):
@@ -317,56 +297,37 @@ class Pair:
         turning = np.linalg.norm(omega, axis=1).max()
         return 1.0 / (speed / (FIRST_STEP * self.reach) + turning / FIRST_TURN)
 
-    def fly(self, start, most_steps=1_000_000, dump=None):
-        """End of the flight from ``start``; it has parted when the bodies move apart beyond ``reach``.
-
-        ``dump``: path of a file that gets all steps.
-        """
+    def fly(self, start, most_steps=1_000_000):
+        """End of the flight from ``start``; it has parted when the bodies move apart beyond ``reach``."""
         if not self.lammps:
             self._open()
         try:
-            return self._fly(start, most_steps, dump)
+            return self._fly(start, most_steps)
         except DeckError as error:
             self.close()
-            return End(
-                start.center, start.velocity, start.quaternion, start.momentum, *([0] * 5), "lost", str(error)
-            )
+            return End(start.center, start.velocity, start.quaternion, start.momentum, 0.0, 0, "lost", str(error))
 
-    def _fly(self, start, most_steps, dump):
+    def _fly(self, start, most_steps):
         command = self.lammps.command
         command(f"unfix {self.line.id}")
         command("reset_timestep 0 time 0.0")
         omega = self._place(start)
         command(f"timestep {self._first_step(start, omega):.17g}")
         self._command(self._command_of_fix)
-        if dump:
-            self._dump(dump)
         run = f"run {STEPS} post no"
-        positions, velocities, forces = (self.lammps.numpy.extract_atom(name)[: len(self._tags)] for name in "xvf")
-        track = Track(start.center[1] - start.center[0], start.velocity[1] - start.velocity[0])
+        positions, velocities = (self.lammps.numpy.extract_atom(name)[: len(self._tags)] for name in "xv")
         steps, beyond = 0, self.reach**2
         while True:
             self._command(run)
             steps += STEPS
-            (one, two), (v_one, v_two) = self.weights @ positions, self.weights @ velocities
-            pull_one, pull_two = self._pulls @ forces
-            away, velocity = two - one, v_two - v_one
-            track.look(self.lammps.get_thermo("time"), away, velocity, pull_two - pull_one)
-            gone = away @ away >= beyond and away @ velocity > 0.0
-            if gone or steps >= most_steps:
-                break
+            (one, two), (v_one, v_two) = (self.weights @ positions, self.weights @ velocities)
+            away = two - one
+            apart = away @ away >= beyond
+            if apart and away @ (v_two - v_one) > 0.0 or steps >= most_steps:
+                return self._end(positions, velocities, steps, bool(apart))
             run = f"run {STEPS} pre no post no"
-        if dump:
-            command(f"undump {DUMP}")
-        return self._end(positions, velocities, steps, track, bool(away @ away >= beyond))
 
-    def _dump(self, path):
-        """Write all steps from now on into a LAMMPS dump, with all digits."""
-        columns = "id mol type mass x y z vx vy vz"
-        self._command(f'dump {DUMP} all custom 1 "{path}" {columns}')
-        self.lammps.command(f"dump_modify {DUMP} sort id time yes units yes format float %.17g")
-
-    def _end(self, positions, velocities, steps, track, parted):
+    def _end(self, positions, velocities, steps, parted):
         """The End of the current flight."""
         bodies = self.bodies
         x, v = positions[bodies.index], velocities[bodies.index]
@@ -377,18 +338,8 @@ class Pair:
             arms, rest = x - center[bodies.of], v - velocity[bodies.of]
             quaternion, _ = superpose(bodies, arms)
             momentum = bodies.sum(bodies.masses[:, None] * cross(arms, rest))
-        return End(
-            center,
-            velocity,
-            quaternion,
-            momentum,
-            self.lammps.get_thermo("time"),
-            steps,
-            int(self.lammps.extract_fix(self.line.id, 0, 1, 15)),
-            track.turnings,
-            track.closest,
-            "parted" if parted else "unparted",
-        )
+        time, fate = self.lammps.get_thermo("time"), "parted" if parted else "unparted"
+        return End(center, velocity, quaternion, momentum, time, steps, fate)
 
     def rotational_energy(self, quaternion, momentum):
         """Kinetic energy (2,) of the rotation of both bodies."""
