@@ -34,25 +34,6 @@ def test_the_step_decides(lmp_tree, data):
     assert "values auto, corrector tuned" in run(lmp_tree, data, "values auto").stdout
 
 
-def test_few_values_need_few_evaluations_of_a_start(lmp_tree, data):
-    """After two pairs of nodes the start finds that five values are sufficient, and ends as with five values."""
-    starts = [(dt, words) for dt in (SHORT, LONG) for words in ("", "values 9")]
-    counted = re.compile(r"start of order \d+ from (\d+) force evaluations")
-    short, short_nine, long, long_nine = (
-        int(counted.search(run(lmp_tree, data, words, dt=dt).stdout)[1]) for dt, words in starts
-    )
-    five = int(counted.search(run(lmp_tree, data, "values 5", dt=LONG).stdout)[1])
-    assert short == short_nine and five <= long <= 12 < long_nine
-
-
-def test_the_edge_is_proportional_to_the_step(lmp_tree, data):
-    edges = []
-    for dt in (0.25, 0.5):
-        why = chosen(run(lmp_tree, data, dt=dt))[0][2]
-        edges.append(float(re.search(r"vibrations of ([\d.]+)", why)[1]))
-    assert edges[1] == pytest.approx(2 * edges[0], rel=0.1)
-
-
 @pytest.mark.parametrize("words", ["values 9", "values 5", "tolerance 1e-6"])
 def test_stated_numbers_are_not_changed(lmp_tree, data, words):
     assert chosen(run(lmp_tree, data, words, dt=LONG)) == []
@@ -212,16 +193,6 @@ def test_a_step_too_long_for_any(lmp_tree, data, words, dt):
     assert "the angle of vibrations" not in run(lmp_tree, data, words, dt=float(step[1]), steps=1).stdout
 
 
-@pytest.mark.parametrize("ranks", [2, 4])
-def test_all_ranks_choose_alike(lmp_tree, data, ranks):
-    frames = []
-    for n in (1, ranks):
-        result = run(lmp_tree, data, dt=1.0, ranks=n, steps=20)
-        frames.append((numbers(result), last_frame(lmp_tree.folder / "poses.dump")))
-    assert frames[0][0] == frames[1][0]
-    assert np.abs(frames[0][1][:, 1:] - frames[1][1][:, 1:]).max() < 1e-10
-
-
 # --- new choices ---------------------------------------------------------------------------------
 def springs(lmp, dt, commands, words=""):
     """A dumbbell and a triangle that vibrate about their positions, with at most 1.42 radians per time."""
@@ -255,20 +226,13 @@ def test_random_forces_that_come_and_go(lmp_tree, data):
 
 
 # --- restart files -------------------------------------------------------------------------------
-def continued(lmp, data, words, later="", dt=LONG, before=""):
-    """The end of a run of 40 steps, the end of a run that was restarted after 20 steps, and the result of the
-    latter."""
-    lmp.succeed(water(data, f"gear/quat molecule {words}", dt=dt, steps=20, run="run 20\nrun 20"))
-    whole = last_frame(lmp.folder / "poses.dump")
-    lmp.succeed(water(data, f"gear/quat molecule {words}", dt=dt, steps=20, run="run 20\nwrite_restart half"))
-    deck = water(data, f"gear/quat molecule {later}", dt=dt, steps=20, dump="half.dump", before=before)
-    result = lmp.succeed(restarted(deck, "half"))
-    return whole, last_frame(lmp.folder / "half.dump"), result
-
-
 @pytest.mark.parametrize("words", ["", "values 7", "corrector gear"])
 def test_a_restart_goes_on_with_the_method_of_the_file(lmp_tree, data, words):
-    whole, half, result = continued(lmp_tree, data, words)
+    settings = dict(dt=LONG, steps=20)
+    lmp_tree.succeed(water(data, f"gear/quat molecule {words}", run="run 20\nwrite_restart half\nrun 20", **settings))
+    whole = last_frame(lmp_tree.folder / "poses.dump")
+    result = lmp_tree.succeed(restarted(water(data, dump="half.dump", **settings), "half"))
+    half = last_frame(lmp_tree.folder / "half.dump")
     assert chosen(result) == [] and "are rebuilt" not in result.stdout
     assert np.array_equal(whole, half)
 
@@ -278,10 +242,3 @@ def test_a_restart_keeps_its_number_outside_of_its_range(lmp_tree, data):
     deck = restarted(water(data, dt=2.8, steps=5), "half")
     result = lmp_tree.succeed(deck)
     assert chosen(result) == [] and "are rebuilt" not in result.stdout
-
-
-def test_what_the_script_states_counts(lmp_tree, data):
-    whole, half, result = continued(lmp_tree, data, "formulation second", later="formulation second project no")
-    assert "are rebuilt" not in result.stdout and not np.array_equal(whole, half)
-    result = continued(lmp_tree, data, "", later="values 9")[2]
-    assert "other settings of values" in result.stdout

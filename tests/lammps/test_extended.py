@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from support.extended_atoms import (
     Atom,
-    assert_inertia,
     body_deck,
     deck,
     ellipsoid,
     equivalent_points,
     from_corners,
+    inertia,
     line,
     matrix,
     quat,
@@ -65,13 +65,6 @@ def data(tmp_path):
     write_triangles(tmp_path / "small data", BODIES["data"][1], 5)
 
 
-def on_both(word, names):
-    """Marks a test of (lmp, word): the wheel has headers only for spheres and dipoles."""
-    pairs = [("tree", name) for name in names]
-    pairs += [("wheel", name) for name in names if name in ("spheres", "dipoles")]
-    return pytest.mark.parametrize(f"lmp, {word}", pairs, indirect=["lmp"])
-
-
 def a_body(name, sites=None, **settings):
     """A deck of the body of that name, or of other sites with the same motion; lines in two dimensions."""
     style, atoms = BODIES[name]
@@ -98,31 +91,6 @@ def only_row(lmp):
     return last_numbers(lmp.folder / "table", 28)
 
 
-# --- inertia ------------------------------------------------------------------------------------
-
-
-@on_both("name", BODIES)
-def test_inertia_and_angular_momentum_include_the_atoms_own(lmp, name):
-    """In a rigid motion atoms have the body's angular velocity only if the tensor is correct."""
-    omega, (_, atoms) = spin(name), BODIES[name]
-    result = lmp.succeed(a_body(name, run="run 0", after=TABLE))
-    assert_inertia(atoms, 1, result.thermo[0]["f_move[2]"][0], only_row(lmp), omega)
-
-
-def test_a_lone_ellipsoid_turns_as_a_free_top(lmp_tree):
-    """Angular momentum and energy are constant, the orientation is not."""
-    atoms = [ellipsoid((0, 0, 0), 2.0, (0.5, 1.0, 1.6))]
-    result = lmp_tree.succeed(body_deck("ellipsoid", atoms, OMEGA))
-    end = last_frame(lmp_tree.folder / "poses.dump")[0]
-    momentum = atoms[0].inertia @ OMEGA
-    assert end[7:10] == pytest.approx(momentum, rel=1e-10)
-    turn = matrix(end[10:14])
-    assert np.abs(turn - atoms[0].turn).max() > 0.5
-    # and the energy computed from its angular momentum is the energy of the body
-    energy = 0.5 * momentum @ turn @ np.diag(1 / np.array(atoms[0].moments)) @ turn.T @ momentum
-    assert energy == pytest.approx(result.thermo[0]["f_move[2]"][-1], rel=1e-10)
-
-
 # --- the same motion as points ------------------------------------------------------------------
 
 SPRING = """
@@ -147,16 +115,17 @@ def test_the_motion_is_that_of_equivalent_points(lmp_tree, name, formulation):
     assert np.abs(sized - move(*(Atom(a.x, a.mass) for a in atoms))).max() > 1e-2
 
 
-@pytest.mark.parametrize("name", BODIES)
-def test_orientations_and_rates_follow_the_body(lmp_tree, name):
+@pytest.mark.parametrize("lmp, name", [*(("tree", name) for name in BODIES), ("wheel", "spheres")], indirect=["lmp"])
+def test_orientations_and_rates_follow_the_body(lmp, name):
     style, atoms = BODIES[name]
-    sites = end(lmp_tree, a_body(name, after=SPRING + TABLE, steps=300, dt=0.01))
-    row = only_row(lmp_tree)
+    sites = end(lmp, a_body(name, after=SPRING + TABLE, steps=300, dt=0.01))
+    row = only_row(lmp)
     # the rotation of the body since the start, from the positions of its three sites
     begin, now = (places[1:] - places[0] for places in (np.array([a.x for a in atoms]), sites[:, 1:4]))
     turn = Rotation.align_vectors(now, begin)[0].as_matrix()
     assert np.abs(turn - np.eye(3)).max() > 0.3
     omega_space = matrix(row[15:19]) @ row[19:22]
+    assert row[22:25] == pytest.approx(turn @ inertia(atoms) @ turn.T @ omega_space, rel=1e-11)
 
     for atom, site in zip(atoms[1:], sites[1:]):
         own = turn @ atom.turn

@@ -12,10 +12,12 @@ from pathlib import Path
 import pytest
 
 from support.example_logs import copy_examples
-from support.running import ROOT, tree_source
+from support.running import ROOT, TREE_BUILD, tree_source
 
 PACKAGE = ROOT / "src" / "GEARQUAT"
 SOURCES = sorted([*PACKAGE.glob("*.h"), *PACKAGE.glob("*.cpp")])
+
+
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory) -> Path:
     """The files of this project in a LAMMPS tree with GEARQUAT, and LAMMPS' scripts."""
@@ -81,6 +83,12 @@ def test_the_kernel_needs_the_standard_library_only():
     for name in kernel:
         text = (PACKAGE / name).read_text()
         assert set(re.findall(r'#include "(.*)"', text)) <= kernel, name
+
+
+def test_ranks_are_called_together_in_one_header_alone():
+    """In test builds its calls compare what all ranks do; a run that differs ends instead of waiting for ever."""
+    assert [path.name for path in SOURCES if "MPI_All" in path.read_text()] == ["gear_quat_ranks.h"]
+    assert "GEARQUAT_CHECKS:BOOL=on" in (TREE_BUILD / "CMakeCache.txt").read_text()
 
 
 def test_style_headers_include_their_base_class_only():

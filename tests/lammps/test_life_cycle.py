@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import two_molecules
+from support.scenes import two_molecules, water
 from support.paper_case import Case1, end
 
 
@@ -34,13 +34,6 @@ def test_a_rerun_in_between(case1):
         assert reinit == "no" or first == pytest.approx(again, abs=1e-10)
         assert (end(result) == whole).all() == (reinit == "no")
         assert end(result) == pytest.approx(whole, abs=1e-7)
-
-
-def test_a_restart_written_before_the_first_step(case1):
-    """This restart file contains the start; test_restart_state.py tests all others."""
-    whole = case1.run("run 1000")
-    case1.run("run 0\nwrite_restart new")
-    assert (end(case1.run("run 1000", "new")) == end(whole)).all()
 
 
 @pytest.mark.parametrize("factor", [2.0, 0.5, 10.0])
@@ -139,3 +132,29 @@ def test_a_step_shorter_than_half_begins_anew(case1):
         ("fix noise body langevin 1.0 1.0 1.0 4711\ntimestep 0.008", {}),
     ):
         assert said not in case1.run(f"run 100\n{commands}\nrun 100", **more).stdout, commands
+
+
+# --- atoms that commands move relative to their body ---------------------------------------------
+GROUPS = "group one id 4\ngroup two molecule 2\n"
+REBUILT = "atoms were changed since the last run; bodies are rebuilt from them"
+
+
+def said(lmp, data, change, words="", first="run 5\n", ranks=1):
+    deck = water(data, f"gear/quat molecule {words}", run=f"{GROUPS}{first}{change}\nrun 5\nrun 5")
+    return lmp.succeed(deck, ranks=ranks).words
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_displaced_atom(lmp_wheel, data, ranks):
+    """The body gets another shape; with reinit no its atom is put back."""
+    move = "displace_atoms one move 0.1 0.05 0"
+    assert REBUILT in said(lmp_wheel, data, move, ranks=ranks)
+    assert REBUILT not in said(lmp_wheel, data, move, "reinit no", ranks=ranks)
+
+
+@pytest.mark.parametrize("first", ["", "run 5\n"])
+def test_a_remapped_box(lmp_wheel, data, first):
+    """Each atom is remapped by itself, which ends the next run; fix deform moves bodies as a whole."""
+    remapped = water(data, run=f"{first}change_box all x scale 1.1 remap\nrun 5")
+    lmp_wheel.refuse(remapped, "change_box with remap moves each atom by itself")
+    said(lmp_wheel, data, "fix d all deform 1 x scale 1.1\nrun 5\nunfix d", first=first)

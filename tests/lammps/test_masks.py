@@ -61,15 +61,6 @@ def test_with_a_step_that_follows_the_error(lmp_tree):
     assert np.abs(end - held_rotor(time)).max() < 1e-10
 
 
-@pytest.mark.parametrize("formulation, values", [("first", 5), ("second", 6)])
-def test_the_order_is_that_of_the_method(lmp_tree, formulation, values):
-    steps = [0.1, 0.05, 0.025]
-    words = f"corrector gear values {values} {HELD}"
-    ends = [rotor(lmp_tree, formulation, words, dt)[0] for dt in steps]
-    errors = [np.abs(end - held_rotor(4.0)).max() for end in ends]
-    assert np.polyfit(np.log(steps), np.log(errors), 1)[0] > 5 - 0.5
-
-
 # --- selection of bodies ----------------------------------------------------------------------
 
 # Five dumbbells whose IDs have gaps, and a constant force on every atom: x(t) = x + a t^2/2 is exact, also with velocity Verlet. They are

@@ -127,17 +127,6 @@ def test_a_drag_on_every_site_stops_the_whole(box, fix, kind):
     assert after == pytest.approx(exact, rel=1e-5)
 
 
-def test_what_pulls_the_whole_is_its_momentum(box, fix):
-    """Gravity and a constant force on the sites of some bodies: this sum is exact for any step."""
-    pull = "fix g all gravity 0.5 vector 0 0 -1\nfix a bodies addforce 0.1 -0.2 0.3"
-    deck = box.deck("end", fix, dt=1.0, steps=100, before=BODIES + pull)
-    box.run(deck)
-    gained = MASS @ box.end("end")[:, 4:7] - MASS @ box.start()
-    force = 14 * 3 * FTM2V * np.array([0.1, -0.2, 0.3])
-    exact = 100.0 * (force + [0, 0, -0.5 * FTM2V * MASS.sum()])
-    assert gained == pytest.approx(exact, rel=1e-8)
-
-
 # --- bodies among atoms that another fix moves ------------------------------------------------
 
 

@@ -48,22 +48,3 @@ def test_a_run_of_no_steps_is_not_refused(lmp_wheel):
     """Run 0 can be used to print energies, or to scale velocities, so that the next run may be stable."""
     deck = carbon_dioxide(0.02, 4.0, run="run 0\nvelocity all scale 1.0\nrun 20")
     assert len(lmp_wheel.succeed(deck).thermo) == 2
-
-
-def patchy(light, words="", omega=800.0):
-    """Particles with a mass at the center and patches of nearly no mass."""
-    sites = np.array([[0.0, 0, 0], [0.5, 0, 0], [-0.25, 0.4, 0]])
-    velocities = np.cross([0, 0, omega], sites)
-    masses = f"mass 1 1.0\nmass 2 {light}"
-    return placed(
-        [sites], velocities, kinds=[1, 2, 2], masses=masses, fix=f"gear/quat molecule {words}", dt=0.005, steps=50
-    )
-
-
-def test_patches_without_mass(lmp_wheel):
-    """Moments in an infile are the remedy, since the rotation is an artifact of the masses."""
-    lmp_wheel.refuse(patchy(1e-6), "blow-up in step")
-    lmp_wheel.succeed(patchy(0.5, omega=10.0))
-    line = "1\n1 1.0 0 0 0 0.1 0.1 0.2 0 0 0 0 0 0 0 0 2.0 0 0 0\n"
-    (lmp_wheel.folder / "bodies").write_text(line)
-    lmp_wheel.succeed(patchy(1e-6, "infile bodies"))

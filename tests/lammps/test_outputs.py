@@ -1,5 +1,7 @@
 """The output for every body: the global array and the local data of the fix."""
 
+import re
+
 import numpy as np
 import pytest
 from support.scenes import WATER_MASSES, expect, last_frame, restarted, water, water_data
@@ -166,3 +168,26 @@ def test_a_dump_of_local_data_before_the_first_run(lmp_tree, ranks):
     known = np.r_[0:6, 12:28]
     for table in (early, again):
         assert table[:, known] == pytest.approx(late[:, known], rel=1e-13, abs=1e-13)
+
+
+# --- the temperature of a group with parts of bodies ----------------------------------------------
+GROUPS = "group oxygens type 1\ngroup hydrogens type 2\n"
+TEMPERATURES = """
+group some molecule 1:13
+compute all all temp
+compute o oxygens temp
+compute h hydrogens temp
+compute some some temp
+thermo_style custom step c_all c_o c_h c_some
+thermo_modify norm no
+"""
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_temperature_of_parts(lmp_tree, ranks):
+    """One warning for each group with parts of bodies, also in several runs; none for groups of whole bodies."""
+    text = water(water_data(lmp_tree.folder / "data.water"), "gear/quat molecule", steps=1, before=GROUPS)
+    text = text.replace("fix_modify move energy yes\n", TEMPERATURES)
+    told = lmp_tree.succeed(text + "\nrun 1", ranks=ranks).words
+    found = re.findall(r"temperature of group (\w+), which has only some atoms of bodies such as \d+", told)
+    assert sorted(found) == ["hydrogens", "oxygens"]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import pytest
 from support.scenes import empty_box
 from scipy.spatial.transform import Rotation
 
@@ -195,12 +194,3 @@ def deck(style, atoms, columns="", fix="single", pair="", before="", after="", *
         dumped=f"{own_columns} {columns}",
         **known,
     )
-
-
-def assert_inertia(atoms, number, energy, row, omega):
-    """The kinetic energy and a row of body data are those of this tensor; 1 % of one atom's tensor is detected."""
-    tensor = inertia(atoms)
-    assert energy == pytest.approx(0.5 * omega @ tensor @ omega, rel=1e-12)
-    assert row[22:25] == pytest.approx(tensor @ omega, rel=1e-12)
-    assert np.linalg.norm(row[19:22]) == pytest.approx(np.linalg.norm(omega), rel=1e-12)
-    tensor += 0.01 * atoms[number].inertia

@@ -1,5 +1,4 @@
-/* Tools for the tests: distances, slopes, derivatives, and the error of 1 % that every check must
-   detect. */
+/* Tools for the tests: distances, slopes and derivatives. */
 
 #pragma once
 
@@ -77,13 +76,6 @@ inline std::vector<double> slopes(const std::vector<double> &h, const std::vecto
   return p;
 }
 
-inline std::vector<double> halvings(double h, int n)
-{
-  std::vector<double> list = {h};
-  while (int(list.size()) <= n) list.push_back(list.back() / 2);
-  return list;
-}
-
 inline double smallest(const std::vector<double> &v)
 {
   return *std::min_element(v.begin(), v.end());
@@ -98,20 +90,6 @@ template <class F> void derivative(F f, int n, double h, double *out)
   f(h, p1.data());
   f(2.0 * h, p2.data());
   for (int i = 0; i < n; ++i) out[i] = (8.0 * (p1[i] - m1[i]) - (p2[i] - m2[i])) / (12.0 * h);
-}
-
-/// The check passes for the values.
-template <class F> void holds(const std::vector<double> &values, F check)
-{
-  EXPECT_TRUE(check(values));
-}
-
-/// The values agree within the tolerance, relative to the magnitude of each.
-template <int N>
-void relatively_near(const double (&values)[N], const double (&expected)[N], double tolerance)
-{
-  for (int i = 0; i < N; ++i)
-    EXPECT_NEAR(values[i], expected[i], tolerance * std::fabs(expected[i]));
 }
 
 /// Rows of a history at time t, step h, for polynomials with these coefficients: `width` of them

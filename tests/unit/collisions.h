@@ -53,7 +53,6 @@ struct Collision {
   Molecule molecules[2];
   BodyState start[2] = {};
   double time;    ///< when the bodies have met and separated, or orbited each other for a while
-  mutable long calls = 0;    ///< of the potential
 
   explicit Collision(int which)
   {
@@ -82,7 +81,6 @@ struct Collision {
   /// For sites at rotation matrices of quaternions of any length; loads: of both, or null.
   double potential(const BodyState *states, Load *loads) const
   {
-    ++calls;
     vector<std::array<double, 3>> arms[2];
     for (int k = 0; k < 2; ++k) {
       double axes[9];
@@ -141,8 +139,7 @@ struct Outcome {
 };
 
 /// most_steps: for a pair that keeps orbiting.
-inline Outcome collide(const Collision &collision, double eps, bool energy,
-                       long most_steps = 100000, bool repeats = true)
+inline Outcome collide(const Collision &collision, double eps, bool energy, long most_steps)
 {
   using One = Follower::One;
   double potential = 0.0;
@@ -170,7 +167,6 @@ inline Outcome collide(const Collision &collision, double eps, bool energy,
   const double first = std::min(farthest(bodies), 1e-2 * std::cbrt(eps));
   Follower follower(eps, energy, first, bodies, loads);
   follower.farthest = farthest;
-  follower.repeats = repeats;
   follower.begin();
 
   const double e0 = potential + collision.kinetic(collision.start);

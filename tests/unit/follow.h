@@ -31,8 +31,6 @@ struct Follower {
   Scheme scheme;
   double t = 0.0, h, largest = 0.0;    ///< error of a step, in units of eps
   long steps = 0, evaluations = 0, repeated = 0;
-  bool repeats = true;    ///< failed steps
-  bool rounded = true;    ///< coordinates, whose rounding error is excluded
   RememberedLoads remembered;
   Growth growing = Growth::START;
   Integrator integrator;
@@ -95,7 +93,7 @@ struct Follower {
       StepErrors errors;
       remembered.correct(control, integrator, one.body, one.reach, met[k],
                          integrator.axes_of(rows).data(), rows, errors);
-      if (rounded) errors.error *= control.counted(integrator, one.body, one.reach, met[k], rows);
+      errors.error *= control.counted(integrator, one.body, one.reach, met[k], rows);
       all.include(errors);
     }
     take_states();
@@ -109,7 +107,7 @@ struct Follower {
       const vector<One> before = bodies;
       const StepErrors errors = try_step();
       const double error = errors.error;
-      if (!repeats || !control.fails(error, h)) {
+      if (!control.fails(error, h)) {
         t += h;
         ++steps;
         remembered.conclude(h);

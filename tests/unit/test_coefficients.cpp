@@ -83,20 +83,6 @@ TEST(Tables, OfAdamsAndMoulton)
   for (int k = 1; k <= 7; ++k) EXPECT_EQ(rational_of(adams_moulton(k)), known[k - 1]) << k;
 }
 
-TEST(Tables, AsDoublesTheyAreRoundedOnce)
-{
-  for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n) {
-    const auto found = second_order_coefficients(n, false);
-    const Exact right = SecondOrderPosition::derived(n);
-    for (int j = 0; j < n; ++j) EXPECT_EQ(double(found[j]), right[j].value()) << n << ", " << j;
-  }
-  for (int n = FIRST_FEWEST; n <= FIRST_MOST; ++n) {
-    const auto found = first_order_coefficients(n);
-    const Exact right = FirstOrder::derived(n);
-    for (int j = 0; j < n; ++j) EXPECT_EQ(double(found[j]), right[j].value()) << n << ", " << j;
-  }
-}
-
 TEST(ErrorWeights, AreThoseOfTheDerivationAndDifferencesOfNeighboringC0)
 {
   const auto weight2 = [](Formulation formulation, int n) {
@@ -115,16 +101,4 @@ TEST(ErrorWeights, AreThoseOfTheDerivationAndDifferencesOfNeighboringC0)
   EXPECT_EQ(first_order_error(4), R(5, 12) - R(3, 8));    // from the printed table
   EXPECT_EQ(first_order_error(5), R(3, 8) - R(251, 720));
   EXPECT_EQ(second_order_local_error(5), R(2) * (R(3, 8) - R(251, 720)));
-}
-
-TEST(Rational, IsExactAndRefusesOverflow)
-{
-  EXPECT_EQ(R(1, 3) + R(1, 6), R(1, 2));
-  EXPECT_EQ(R(-2, 4), R(1, -2));
-  EXPECT_EQ(R(3, 7) / R(9, 14), R(2, 3));
-  EXPECT_NE(R(251, 720), R(251, 720) * R(101, 100));
-  EXPECT_DOUBLE_EQ(R(-3, 8).value(), -0.375);
-  R large(1, 3);
-  EXPECT_THROW(for (int i = 0; i < 9; ++i) large = large * large, std::overflow_error);
-  EXPECT_THROW(R(1, 0), std::domain_error);
 }

@@ -45,14 +45,3 @@ TEST(Collisions, ToleranceIsAnEnergy)
 {
   expect_all(true, 1e3);
 }
-
-TEST(Collisions, WithoutRepetitionStepsAreWrong)
-{
-  double with = 0.0, without = 0.0;
-  for (int which = 0; which < 20; ++which) {
-    with = std::max(with, collide(Collision(which), 1e-8, true, 3000).worst);
-    without = std::max(without, collide(Collision(which), 1e-8, true, 3000, false).worst);
-  }
-  EXPECT_LE(with, 1.0);
-  EXPECT_GT(without, 5.0);
-}

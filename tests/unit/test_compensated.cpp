@@ -1,5 +1,5 @@
 /* Compensated histories: the value of a row is row + carry.  Compared with 113 bits, and by the
-   error after a million small steps, in both formulations. */
+   error after many small steps, in both formulations. */
 
 #include "scenes.h"
 
@@ -86,29 +86,15 @@ TEST(Compensated, CorrectionLosesNoMoreThanTheLastDigitOfTheIncrement)
   const int n = 6;
   const vector<double> c = {0.15, 0.7, 1.0, 0.6, 0.2, 0.02}, start = some_rows<2>(n, 1e-4);
   const double residual = 3.7e-9;
-  auto check = [&](const vector<double> &from) {
-    vector<double> rows = from;
-    Nordsieck<1, 2>::correct<1>(rows.data(), n, c.data(), 0, &residual);
-    const vector<Quad> before = exact<2>(start, n), after = exact<2>(rows, n);
-    for (int j = 0; j < n; ++j) {
-      const double way = c[j] * residual,
-                   e = magnitude(after[j] - before[j] - Quad(c[j]) * residual);
-      // a carry is part of the sum, which loses a part in 1e16 of both by rounding
-      if (j < 2 && !(e <= 2 * HALF_ULP * way)) return false;
-      if (j >= 2 && !(e <= HALF_ULP * (std::fabs(start[j]) + way) * 1.01)) return false;
-    }
-    return true;
-  };
-  Check::holds(start, check);
-}
-
-TEST(Compensated, SumAndCarryAreOneNumberBrokenAtTheLastDigit)
-{
-  // after any addition the carry is below half of the last digit: nothing remains to be transferred
-  vector<double> rows = some_rows<2>(6, 1e-3);
-  for (int k = 0; k < 1000; ++k) Nordsieck<1, 2>::predict(rows.data(), 6);
-  for (int j = 0; j < 2; ++j) EXPECT_EQ(rows[j] + rows[6 + j], rows[j]);
-  EXPECT_NE(rows[6], 0.0);
+  vector<double> rows = start;
+  Nordsieck<1, 2>::correct<1>(rows.data(), n, c.data(), 0, &residual);
+  const vector<Quad> before = exact<2>(start, n), after = exact<2>(rows, n);
+  for (int j = 0; j < n; ++j) {
+    // a carry is part of the sum, which loses a part in 1e16 of both by rounding
+    const double way = c[j] * residual,
+                 limit = j < 2 ? 2 * way : 1.01 * (std::fabs(start[j]) + way);
+    EXPECT_LE(magnitude(after[j] - before[j] - Quad(c[j]) * residual), HALF_ULP * limit);
+  }
 }
 
 TEST(Compensated, RescalingKeepsRowAndCarry)
@@ -117,20 +103,14 @@ TEST(Compensated, RescalingKeepsRowAndCarry)
   const int n = 5;
   for (double ratio : {0.3, -1.0, 1.7, 0.001}) {
     const vector<double> start = some_rows<2>(n, 0.5);
-    const vector<Quad> before = exact<2>(start, n);
-    auto check = [&](const vector<double> &from) {
-      vector<double> rows = from;
-      Nordsieck<1, 2>::rescale(rows.data(), n, ratio);
-      const vector<Quad> after = exact<2>(rows, n);
-      Quad factor = 1;
-      for (int j = 0; j < n; ++j, factor *= ratio) {
-        const double limit = j == 0 ? 0.0 : j == 1 ? 1e-31 : 5e-16;
-        if (!(magnitude(after[j] - before[j] * factor) <= limit * magnitude(before[j] * factor)))
-          return false;
-      }
-      return true;
-    };
-    Check::holds(start, check);
+    vector<double> rows = start;
+    Nordsieck<1, 2>::rescale(rows.data(), n, ratio);
+    const vector<Quad> before = exact<2>(start, n), after = exact<2>(rows, n);
+    Quad factor = 1;
+    for (int j = 0; j < n; ++j, factor *= ratio) {
+      const double limit = j == 0 ? 0.0 : j == 1 ? 1e-31 : 5e-16;
+      EXPECT_LE(magnitude(after[j] - before[j] * factor), limit * magnitude(before[j] * factor));
+    }
   }
 }
 
@@ -142,28 +122,6 @@ TEST(Compensated, PlainHistoriesHaveNoCarries)
     const int carries = scheme.first() ? 1 : 2;    // rows that are integrated
     EXPECT_EQ(scheme.size(), (scheme.values() + carries) * scheme.width());
     EXPECT_LE(scheme.size(), MAX_SIZE);
-  }
-}
-
-TEST(Compensated, MillionStepsOfFreeFlight)
-{
-  const RigidBody body = {3.0, {1.0, 1.0, 1.0}};
-  const BodyState start = {{1000.1, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}, {0.7, 0.0, 0.0}, {}};
-  const double h = 1e-4;
-  const int n = 1000000;
-  for (Formulation formulation : {FIRST, SECOND}) {
-    double error[2];
-    for (bool compensate : {false, true}) {
-      Motion motion(body, start, free_of_load, scheme_of(formulation, 0, 1, compensate), h,
-                    Start::FORCES, h);
-      // the displacement in one step as rounded by the start: first p/m is one, second row 1
-      const Quad step = motion.rows[motion.scheme.width()], end = motion.rows[0] + n * step;
-      motion.steps(n);
-      error[compensate] = magnitude(motion.rows[0] - end);
-      EXPECT_GT(magnitude(0.01 * n * step), 0.5);    // 1 % of the displacement
-    }
-    EXPECT_LE(error[1], 1000.1 * HALF_ULP * 1.1);    // the position's own last digit
-    EXPECT_GT(error[0], 1e-11);
   }
 }
 

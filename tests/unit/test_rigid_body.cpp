@@ -37,18 +37,15 @@ TEST(EulersEquations, AngularMomentumInSpaceChangesByTheTorque)
   angular_acceleration(body, torque_body, w.data(), wdot);
   quaternion_rate(q.data(), w.data(), qdot);
 
-  auto balanced = [&](const vector<double> &wdot) {    // d/dt (A^T I omega) = torque
-    auto momentum = [&](double t, double *out) {
-      double p[4], turn[9], l[3];
-      for (int i = 0; i < 4; ++i) p[i] = q[i] + t * qdot[i];
-      for (int i = 0; i < 3; ++i) l[i] = body.inertia[i] * (w[i] + t * wdot[i]);
-      rotation_matrix(p, dot4(p, p), turn);
-      to_space(turn, l, out);
-    };
-    Check::derivative(momentum, 3, 1e-3, rate);
-    return largest_difference(rate, torque.data(), 3) <= 1e-11;
+  const auto momentum = [&](double t, double *out) {    // d/dt (A^T I omega) = torque
+    double p[4], turn[9], l[3];
+    for (int i = 0; i < 4; ++i) p[i] = q[i] + t * qdot[i];
+    for (int i = 0; i < 3; ++i) l[i] = body.inertia[i] * (w[i] + t * wdot[i]);
+    rotation_matrix(p, dot4(p, p), turn);
+    to_space(turn, l, out);
   };
-  Check::holds({wdot[0], wdot[1], wdot[2]}, balanced);
+  Check::derivative(momentum, 3, 1e-3, rate);
+  EXPECT_LE(largest_difference(rate, torque.data(), 3), 1e-11);
 }
 
 TEST(EulersEquations, AnAxisWithoutInertiaHasNoAcceleration)
@@ -65,29 +62,6 @@ TEST(EulersEquations, AnAxisWithoutInertiaHasNoAcceleration)
   EXPECT_EQ(rod.rotational_freedoms(), 2);
   EXPECT_EQ(point.rotational_freedoms(), 0);
   EXPECT_EQ((RigidBody{1.0, {3.0, 2.0, 1.0}}).rotational_freedoms(), 3);
-}
-
-TEST(EulersEquations, TheTorqueDoesTheWork)
-{
-  // d/dt of the rotational energy is torque . omega: the gyroscopic term does no work
-  Check::Numbers numbers(22);
-  const RigidBody body = {2.5, {3.0, 2.0, 0.7}};
-  const vector<double> w = numbers.list(3), torque = numbers.list(3), v = numbers.list(3);
-  double wdot[3], power;
-  angular_acceleration(body, torque.data(), w.data(), wdot);
-  auto check = [&](const vector<double> &wdot) {
-    auto energy = [&](double t, double *out) {
-      double omega[3];
-      for (int i = 0; i < 3; ++i) omega[i] = w[i] + t * wdot[i];
-      *out = rotational_energy(body, omega);
-    };
-    Check::derivative(energy, 1, 1e-2, &power);
-    return std::fabs(power - dot3(torque.data(), w.data())) <= 1e-13;
-  };
-  Check::holds({wdot[0], wdot[1], wdot[2]}, check);
-
-  const double along[3] = {0.0, 3.0, 4.0};
-  EXPECT_DOUBLE_EQ(translational_energy(body, along), 31.25);
 }
 
 TEST(PrincipalAxes, OfRandomTensors)

@@ -1,10 +1,9 @@
-/* Collocation in gear_quat_startup.h: its polynomials, extrapolation from the inner nodes, and the
-   convergence measure. */
+/* Collocation in gear_quat_startup.h: extrapolation from the inner nodes, and the convergence measure.
+   Its series are in test_startup.cpp. */
 
 #include "scenes.h"
 
 using namespace Drive;
-using Check::slopes;
 
 namespace {
 
@@ -55,41 +54,6 @@ TEST(StartupNodes, AsManyAsTheOrderNeeds)
   for (int pairs : EVERY_PAIRS) EXPECT_EQ(Collocation(values_for(pairs)).pairs(), pairs);
 }
 
-TEST(StartupNodes, PolynomialsOfTheirDegreeAreIntegratedExactly)
-{
-  for (int pairs : EVERY_PAIRS) {
-    const int degree = 2 * pairs;
-    const Collocation collocation(values_for(pairs));
-    const vector<double> a = of_degree(degree, pairs);
-    Collocation::Workspace w = nodes_of(a, pairs, pairs);
-    for (int i = 0; i < 6; ++i) {
-      w.start[0][i] = 0.5;
-      w.start[1][i] = -0.25;
-    }
-    w.body = {1.0, {1e6, 1e6, 1e6}};    // hardly turns
-    w.q[3] = 1.0;
-    const TaylorSeries series = collocation.series(w);
-    ASSERT_EQ(series.terms, degree + 3);
-
-    vector<double> terms = {0.5, -0.25};    // of x: a integrated twice
-    for (int j = 0; j <= degree; ++j) terms.push_back(a[j] / ((j + 1) * (j + 2)));
-    Check::holds(terms, [&](const vector<double> &x) {
-      for (int j = 0; j < series.terms; ++j)
-        if (!(std::fabs(series.c[j][0] - x[j]) <= 0.005 * std::fabs(x[j]))) return false;
-      vector<double> rate;
-      for (std::size_t j = 1; j < x.size(); ++j) rate.push_back(double(j) * x[j]);
-      for (int k = -pairs; k <= pairs; ++k) {
-        const BodyState s = collocation.state_at(k, w, 0.5);
-        const double value = polynomial(x, k), velocity = polynomial(rate, k) / 0.5;
-        if (!(std::fabs(s.center[1] - value) <= 1e-13 * (1.0 + std::fabs(value)))) return false;
-        if (!(std::fabs(s.velocity[1] - velocity) <= 1e-13 * (1.0 + std::fabs(velocity))))
-          return false;
-      }
-      return true;
-    });
-  }
-}
-
 TEST(StartupNodes, ForetellingIsExactForWhatTheInnerNodesHold)
 {
   for (int pairs : EVERY_PAIRS)
@@ -137,30 +101,4 @@ TEST(StartupNodes, ChangeIsRelativeToTheMotion)
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(change(0.0, infinity, 0.0, 1.0), infinity);
   EXPECT_EQ(change(0.0, std::nan(""), 0.0, 1.0), infinity);
-}
-
-TEST(StartupNodes, SeriesApproachesTheExactOneWithTheOrderOfTheNodes)
-{
-  // n nodes: the terms from the second derivative on are of order n + 2 in the spacing
-  const BodyState s = top_state(0.0);
-  const Oracle::TaylorTop top(Oracle::MOMENTS, s.q, s.omega_body);
-  for (int pairs : EVERY_PAIRS) {
-    const int n = 2 * pairs + 1;
-    const vector<double> spacing = pairs > 4 ? vector<double>{0.6, 0.45} : vector<double>{0.2, 0.1};
-    vector<double> error;
-    for (double H : spacing) {
-      const TaylorSeries series = settled_series(values_for(pairs), TOP, s, swing, H);
-      double worst = 0.0;
-      for (int j = 0; j < n; ++j) {
-        for (int i = 0; i < 3; ++i) {    // x = cos(t + i + 0.3)
-          const double exact = std::cos(i + 0.3 + j * std::acos(0.0)) / std::tgamma(j + 1);
-          worst = std::max(worst, std::fabs(series.c[j][i] - exact * std::pow(H, j)));
-        }
-        for (int i = 0; i < 4; ++i)    // without torque q is exact
-          EXPECT_NEAR(series.c[j][3 + i], double(top.q[j][i]) * std::pow(H, j), 1e-14);
-      }
-      error.push_back(worst);
-    }
-    EXPECT_GT(slopes(spacing, error)[0], n + 2 - 0.5) << pairs;
-  }
 }
