@@ -18,7 +18,6 @@ LINES = {
 FREE_OF_FORCES = "pair_style zero 2.5\npair_coeff * *"
 LATTICE = "lattice sq 0.04 origin 0.5 0.5 0\ncreate_atoms 0 box mol w 4711"
 SCENES = {  # pair style, edge of the box, bodies and their number, steps
-    "gas": (FREE_OF_FORCES, 35, LATTICE, 49, 12000),
     "liquid": ("pair_style lj/cut 2.5\npair_coeff * * 1.0 0.8", 35, LATTICE, 49, 12000),
     "one body": (FREE_OF_FORCES, 10, "create_atoms 0 single 5 5 0 mol w 4711", 1, 100000),
 }
