@@ -62,8 +62,8 @@ def principal_axes(tensors):
     """Moments (B, 3), falling, and axes (B, 3, 3) of symmetric tensors (B, 3, 3).
 
     Columns of ``axes`` are the axes, right-handed: it turns body components into components in the frame of the
-    tensor.  Cyclic Jacobi rotations, because LAPACK stops at double precision: here both are good to a few units in
-    the last place of the tensor's own float type.
+    tensor.  Found by cyclic Jacobi rotations, because LAPACK has double precision at most: errors are a few units in the
+    last place of the tensor's own float type.
     """
     a = np.array(tensors)
     axes = np.zeros_like(a) + np.eye(3, dtype=a.dtype)

@@ -90,7 +90,7 @@ def _of_cvode(rates, span, start, method, rtol, atol):
 
 
 def _of_scipy(rates, span, start, method, rtol, atol):
-    """The same of SciPy's methods."""
+    """The same for SciPy's methods."""
     if method == DDEABM:
         from extensisq import SWAG as method
     # no times in between are requested, because dense output would call the right-hand side additionally

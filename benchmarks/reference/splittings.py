@@ -83,8 +83,8 @@ SPLITTINGS = (
 class FreeRotation:
     """Exact motion of B free tops; ``moments`` (B, 3).
 
-    Raises ValueError for three equal moments, and for a rotation about a principal axis.  Near the
-    middle axis the angle loses as many digits as twice the number of zeros of its distance from it.
+    Raises ValueError for three equal moments, and for a rotation about a principal axis.  For a
+    rotation at a small angle a from the middle axis, the relative error is larger by a factor of 1/a^2.
     """
 
     def __init__(self, moments):

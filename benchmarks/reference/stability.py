@@ -9,8 +9,8 @@ is error, not instability.  Source of the analysis: C. W. Gear,
 Gear's coefficients, for N values (rows j = 0 ... N-1), from the polynomial P_n(s) = (1+s)(1+s/2)...(1+s/n):
   first-order equation    sum_j j c_j s^(j-1) = P_(N-2)(s),  c_0 = integral of P_(N-1) over (-1, 0)
   second-order equation   c_(j+1) = 2 a_j / (j+1), a_j from a first-order equation with N-1 values;
-                          c_0 = 2 times the integral of -s P_(N-2)(s) over (-1, 0) ("velocity"),
-                          that times (N-2)/(N-1) ("position")
+                          c_0 = C = 2 times the integral of -s P_(N-2)(s) over (-1, 0) for "velocity",
+                          c_0 = C (N-2)/(N-1) for "position"
 """
 
 import ctypes

@@ -135,7 +135,7 @@ def initial_energy(results, case, energy, digits):
 
 
 def energy_error(results, case, formulation):
-    """The largest error of the total energy, in parentheses relative to the swing of the potential."""
+    """The largest error of the total energy, in parentheses relative to the range of the potential energy."""
     for body, values in printed(results, case, formulation):
         error, swing = np.abs(dv.energy_error(values)).max(), dv.energy_scale(values)
         yield Reading(
@@ -279,9 +279,9 @@ def energy_held(case, formulation, figure):
     return Claim(
         f"test case {case}, {figure}",
         f"the {formulation} formulation holds the total energy tightly",
-        f"the largest error is below {PERCENT} of the swing of the potential energy",
+        f"the largest error is below {PERCENT} of the range of the potential energy",
         partial(energy_error, case=case, formulation=formulation),
-        lead="largest error of the energy (in parentheses, relative to the swing): ",
+        lead="largest error of the energy (in parentheses, relative to the range of the potential energy): ",
     )
 
 
@@ -336,7 +336,7 @@ CLAIMS = (
     Claim(
         "test case 2, Fig. 5",
         "the energy of the first formulation drifts upward at about t = 4000",
-        f"the energy stays {PERCENT} of the swing above its start from t = 4000 ± {WITHIN} on;"
+        f"the energy stays {PERCENT} of the range of the potential energy above its start from t = 4000 ± {WITHIN} on;"
         " it is explained if it does from another time on",
         late_drift,
         reason="the time at which the body comes close to a sphere, where the step is too large, is chaotic",
@@ -344,7 +344,7 @@ CLAIMS = (
     Claim(
         "test case 2, Fig. 6",
         "the energy of the second formulation does not drift",
-        f"the energy at the end is at most {PERCENT} of the swing above its start",
+        f"the energy at the end is at most {PERCENT} of the range of the potential energy above its start",
         no_late_drift,
     ),
     formulations_part(2, "Fig. 7, Table 7", "they coincide until t = 250 to 300", 250, 300),

@@ -10,7 +10,7 @@ OUTSIDE = 200.0
 
 
 def separation(first, second):
-    """Distance between the centers of mass of two series, shape (n,) of their common times.
+    """Distances (n,) between the centers of mass of two series at their n common times.
 
     Both must be sampled at the same times from the start on; the longer one is truncated.
     """
@@ -48,10 +48,9 @@ def energy_scale(series):
 
 
 def drift_onset(series, fraction=0.02):
-    """Time from which the total energy differs from its start by more than ``fraction`` of the swing.
+    """Time from which the total energy differs from its start by more than ``fraction`` of the potential's range.
 
-    Returns (time, sign): infinite and 0 if the last sample is within this limit.  The swing is the range of
-    the potential energy, the height of the paper's figures.
+    Returns (time, sign): infinite and 0 if the last sample is within this limit.
     """
     error = energy_error(series)
     beyond = np.abs(error) > fraction * energy_scale(series)

@@ -45,7 +45,7 @@ def errors_of_state(reference, state):
 
 
 def errors_of_outcome(reference, outcome):
-    """The same of an Outcome of LAMMPS."""
+    """The same errors of an Outcome of LAMMPS."""
     off = (outcome.after - reference.positions(outcome))[outcome.molecules > 0]
     return *reference.errors(outcome), _rms(off)
 

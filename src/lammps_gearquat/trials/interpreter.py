@@ -39,8 +39,8 @@ class Command:
 
     ``mover`` is the FixLine if it defines a fix that moves bodies, and ``in_use`` whether later
     commands needed that very fix; ``modifies`` is the ID of such a fix in a fix_modify command.
-    Of a command that moves atoms, ``state`` is the prefix of the files with the state it led to;
-    it is ``superseded`` if no command used that state before the next such command.
+    If the command moves atoms, ``state`` is the prefix of the files with the state after it, which is
+    ``superseded`` if the next command that moves atoms comes before any that uses this state.
     """
 
     text: str

@@ -188,7 +188,7 @@ class FixLine:
     def with_numerics(self, text):
         """This line with its keywords about integration replaced by ``text``.
 
-        Raises DeckError for text that is not pairs of a keyword and a value, or does not fit.
+        Raises DeckError for text that is not pairs of a keyword and a value, or that this line does not permit.
         """
         if not self.takes(text):
             raise DeckError(
