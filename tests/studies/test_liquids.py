@@ -55,7 +55,7 @@ def results(rates=(), lost=()):
         for method in study.NAMES:
             for dt in study.STEPS:
                 key = liquid.key, method.key, dt
-                runs = range(plan.extent(liquid)[0])
+                runs = range(plan.starts)
                 found[key] = [made_up(rates.get(key, 0.0), liquid, seed=(seed := seed + 1)) for _ in runs]
                 if key in lost:
                     found[key][-1] = made_up(liquid=liquid, time=TIME[:4])
