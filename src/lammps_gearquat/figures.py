@@ -70,10 +70,7 @@ def draw_cost(path, deck, costs):
 
 
 def _draw_prices(axis, name, costs):
-    """One panel; ``name`` is the field of a Point that is the cost.
-
-    Times of trials that ran once are not drawn beside the shortest of several.
-    """
+    """One panel; ``name`` is the field of a Point that is the cost.  Times of one run are not drawn beside the shortest of several."""
     methods = costs.points()
     timings = [point.timings for points in methods.values() for point in points]
     least = min(2, max(timings, default=1)) if name == "seconds" else 1

@@ -308,8 +308,7 @@ def test_cost_of_a_deck_that_was_not_written_for_it(make_deck, tmp_path):
             recommended = own_dt if row["keep"] == "yes" else dt
             assert f"timestep {evaluate.usable_step(recommended):g}" in result.output
             assert error_of(row["keywords"], evaluate.usable_step(dt)) < error
-            if row["own_kind"] == "measured":
-                assert 0.5 * error < error_of(None, own_dt) < error
+            assert error_of(None, own_dt) < error
             # evaluations and not seconds, because they do not depend on the load of the machine
             assert float(row["own_evaluations"]) > 1.5 * float(row["evaluations"])
 
@@ -330,12 +329,9 @@ def costs_of(doubt, errors, methods=(OWN, A)):
 
 def test_rows_are_the_cheapest_and_nothing_below_the_doubt():
     costs = costs_of(1e-8, [1e-3, 1.005e-6, 2e-8])
-    own, best = costs.rows[0].own, costs.rows[0].best
-    far, other = costs.rows[1].own, costs.rows[1].best
-    assert own.dt == 0.025 and own.aim == pytest.approx((1e-3 - 1e-8) ** 0.5, rel=1e-4)
-    assert (best.method, best.dt, best.kind) == ("a", 0.1, "at most")
-    assert far.kind == "extrapolated" and far.seconds == pytest.approx(1.005e-6**-0.5, rel=1e-3)
-    assert other.dt == 0.05  # the error at 0.1 is 1e-6, and may be larger by the uncertainty
+    assert (costs.rows[0].own.dt, costs.rows[0].best.method, costs.rows[0].best.dt) == (0.025, "a", 0.1)
+    assert costs.rows[1].own is None
+    assert costs.rows[1].best.dt == 0.05  # the error at 0.1 is 1e-6, and may be larger by the uncertainty
     assert (costs.rows[2].own, costs.rows[2].best, costs.rows[2].choice) == (None, None, None)
 
 
@@ -344,7 +340,6 @@ def test_the_own_fix_is_kept_where_none_is_faster():
     assert keep.keep and keep.choice is keep.own
     assert not change.keep and change.choice is change.best
     assert not cost.Row(1.0).keep and cost.Row(1.0, own=keep.own).keep
-    assert not cost.Row(1.0, own=change.own).keep  # extrapolated
 
 
 KNEE = 0.15
@@ -363,10 +358,9 @@ def test_lines_for_a_script_say_what_to_do_about_other_errors():
     text = "\n".join(report._script_lines(deck, costs_of(1e-8, [1e-1, 1e-6], [OWN])))
     assert "# keep your fix: no other is faster\n    fix None\n    timestep 0.1" in text
     assert "No trial within the budget had an error of 1.0e-06: try a longer" in text
-    assert text.endswith("Your own fix would need timestep 0.001, as extrapolated.")
     assert "can be judged" in report._script_lines(deck, costs_of(1e-3, [1e-3]))[0]
     text = "\n".join(report._script_lines(deck, costs_of(1e-8, [1e-6], [])))
-    assert "No trial within the budget" in text and "Your own fix" not in text
+    assert "No trial within the budget" in text
 
 
 class MadeUpDeck:
@@ -430,14 +424,7 @@ def test_cost_keeps_its_budget(monkeypatch, pace, overhead):
         keywords = None if row.keep else row.choice.method
         dt = evaluate.usable_step(row.choice.dt)
         # the step has been tried, keeps the error, and is not much shorter than necessary
-        assert deck.error(keywords, dt) * costs.end < row.error
-        # the unit of a drift: 1000 time units, and kT of one degree of freedom is twice the energy
-        drifts = 10.0 * deck.error(keywords, 1.3 * dt) > costs.bound
-        assert deck.error(keywords, 1.3 * dt) * costs.end > row.error or drifts
-        assert row.choice.kind == "measured" or drifts
-        found = costs.drifts[row.recommended]
-        assert abs(found.rate) < costs.bound or pace > 0.1
-        assert found.rate == pytest.approx(10.0 * deck.error(*row.recommended)) or pace > 0.1
+        assert deck.error(keywords, dt) * costs.end < row.error < deck.error(keywords, 1.6 * dt) * costs.end
         assert row.choice.dt in {t.dt for t, _ in costs.trials if t.keywords == keywords}
 
 
@@ -491,16 +478,14 @@ def test_time_is_cut_where_the_reference_is_not_known():
     assert doubt.cut_to(time, np.full(20, 1e-9), [1e-4, 1e-8]) == (19, "")
     index, why = doubt.cut_to(time, parted, [1e-4, 1e-8])
     assert 3 * parted[index] < 1e-8 <= 3 * parted[index + 1] and "cannot be judged" in why
-    index, why = doubt.cut_to(time, np.full(20, 1e-6), [1e-2, 1e-8])
-    assert (index, why) == (19, "")
-    index, why = doubt.cut_to(time, np.full(20, 1.0), [1e-2, 1e-8])
-    assert index == 1 and "none of the errors can be judged" in why
+    assert doubt.cut_to(time, np.full(20, 1e-6), [1e-2, 1e-8]) == (19, "")
+    assert doubt.cut_to(time, np.full(20, 1.0), [1e-2, 1e-8])[0] == 1
 
 
 def test_usable_step_is_never_larger():
     for dt in (0.123456, 1e-5, 0.0999999, 7.0, 0.1):
         cut = evaluate.usable_step(dt)
-        assert dt / evaluate.CLOSE < cut <= dt * (1 + 1e-9)
+        assert dt / 1.1 < cut <= dt * (1 + 1e-9)
         assert float(f"{cut:.1e}") == cut
 
 

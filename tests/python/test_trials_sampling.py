@@ -1,6 +1,5 @@
 """gearquat cost where trajectories diverge: steps are judged by the drift of the energy and by temperatures."""
 
-import csv
 import math
 import types
 
@@ -12,7 +11,7 @@ from gearquat_analysis.bodies import Bodies
 from gearquat_analysis.blocks import Estimate
 from gearquat_analysis.units import UNITS
 from lammps_gearquat.launch import LammpsError
-from lammps_gearquat.trials import cost, doubt, drift, measure, methods, sampling, sampling_report
+from lammps_gearquat.trials import cost, doubt, drift, measure, methods, report, sampling
 from lammps_gearquat.trials.drift import Drift
 from lammps_gearquat.trials.measure import Deck
 
@@ -105,8 +104,7 @@ def test_a_method_that_drifts_is_never_recommended(monkeypatch, seed, noise, tri
     keywords, dt = found.recommended
     assert abs(only(keywords, dt)) < found.bound and found.choice.drift.holds
     assert (keywords, dt) == ((LONGEST, 5.0) if LONGEST in tries else ("", 4.0))
-    assert math.isnan(found.enough) and "--budget" not in sampling_report.text(deck, found)
-    assert found.choice.drift.time > 0.9 * drift.longest(deck) and deck.now < 180.0
+    assert deck.now < 180.0
     for run in found.rows:  # each step is judged by its drift
         true = only(run.keywords, run.dt)
         assert abs(run.drift.rate - true) < 5.0 * run.drift.error + 0.01 * abs(true) or run.drift.fails
@@ -119,19 +117,6 @@ def test_the_bound_is_the_users(monkeypatch):
     assert tight.recommended[1] < loose.recommended[1]
 
 
-@pytest.mark.parametrize("pace", [0.01, 0.03, 0.1])
-def test_a_budget_that_is_too_small_is_told(monkeypatch, pace):
-    """With the budget that the message states, the run reaches its full length, or decides the question."""
-    small, more = (MadeUpLiquid(steep, pace=pace, noise=1e-4) for _ in range(2))
-    found = answer_of(monkeypatch, small)
-    text, what = sampling_report.text(small, found), "of 100000 fs" if found.recommended else "that is long enough to tell"
-    assert f"A run {what} needs --budget {sampling_report.rounded(found.enough, 2)} or more" in text
-    assert 1.5 * 180.0 <= found.enough < 100.0 * 180.0 * pace / 0.01
-    longer = answer_of(monkeypatch, more, found.enough)
-    assert longer.recommended and abs(steep(*longer.recommended)) < longer.bound
-    assert longer.choice.drift.time > 0.9 * drift.longest(more) or not found.recommended
-
-
 def test_what_the_script_has_already_is_not_tried_again(monkeypatch):
     """For a script with the fix and its defaults, a longer step is recommended; further trials are made only at the
     user's request."""
@@ -141,20 +126,10 @@ def test_what_the_script_has_already_is_not_tried_again(monkeypatch):
     assert {run.keywords for run in found.runs} == {None, "", LONGEST}
 
 
-@pytest.mark.parametrize(
-    ("rate", "error", "hopeless"),
-    [(-0.233, 0.083, True), (0.12, 0.01, True), (-0.09, 0.02, True), (0.05, 0.02, False), (0.05, 0.3, False), (0.15, 0.1, False)],
-)
-def test_a_long_run_is_made_where_it_may_show_that_a_step_holds(rate, error, hopeless):
-    """4 fs in SPC/E, which drifts by -0.23, once took the time that 3 fs needed."""
-    search = sampling.Search(types.SimpleNamespace(deck=MadeUpLiquid(steep)), None)
-    assert search.hopeless(Drift(rate, error)) == hopeless and not search.hopeless(Drift())
-
-
 def test_where_nothing_holds_that_is_said_with_the_smallest_drift(monkeypatch):
     found = answer_of(monkeypatch, MadeUpLiquid(lambda keywords, dt: 0.7 + 0.1 * dt + (keywords != "")))
     assert found.recommended is None and found.choice is None
-    text = sampling_report.text(MadeUpLiquid(steep), found)
+    text = report.drift_text(MadeUpLiquid(steep), found)
     assert "Nothing is recommended: no step is known to keep the drift below 0.1 kT/ns/dof" in text
     assert found.least.keywords == "" and f"timestep {found.least.dt:g}" in text.split("The smallest drift seen is")[1]
     assert abs(found.least.drift.rate - 0.7 - 0.1 * found.least.dt) < 5 * found.least.drift.error
@@ -167,7 +142,7 @@ def test_temperatures_that_differ_are_no_equilibrium(monkeypatch):
     choice = found.choice.drift
     assert deck.apart(found.choice.dt) < drift.BALANCE * KELVIN + 5.0 * choice.difference.error < 10.0
     wrong = [run for run in found.rows if run.drift.unbalanced]
-    assert wrong and all(sampling_report.verdict(run) == "temperatures differ" for run in wrong)
+    assert wrong and all(report.verdict(run) == "temperatures differ" for run in wrong)
 
 
 def test_a_step_that_fails_only_in_a_long_run_is_not_recommended(monkeypatch):
@@ -175,35 +150,31 @@ def test_a_step_that_fails_only_in_a_long_run_is_not_recommended(monkeypatch):
     found = answer_of(monkeypatch, deck)
     assert found.recommended == ("", 3.0)
     assert found.row("", 4.0).drift.fails
-    text = sampling_report.text(deck, found)
+    text = report.drift_text(deck, found)
     assert "ended with an error:\n    blow-up" in text and "atom_modify map yes" in text
 
 
 @pytest.mark.parametrize("pace", [1e-4, 0.02, 0.3])
-def test_the_budget_is_kept(monkeypatch, tmp_path, pace):
+def test_the_budget_is_kept(monkeypatch, pace):
     deck = MadeUpLiquid(steep, pace=pace)
     found = answer_of(monkeypatch, deck)
     assert deck.now < 180.0
     assert found.recommended is None or found.choice.drift.holds
-    sampling_report.write(tmp_path, found)
-    rows = list(csv.DictReader((tmp_path / "cost.csv").open()))
+    header, rows = report.drift_tables(found)["cost"]
+    rows = [dict(zip(header, row)) for row in rows]
     assert len(rows) == len(found.rows) and sum(row["recommended"] == "yes" for row in rows) == bool(found.recommended)
-    assert all(row["drift"] or row["verdict"] in ("not known", "ends with an error") for row in rows)
+    assert all(row["drift"] != "" or row["verdict"] in ("not known", "ends with an error") for row in rows)
     assert found.own.keywords is None
 
 
 def test_errors_that_are_asked_for_are_those_of_a_trajectory(monkeypatch):
-    found = answer_of(monkeypatch, MadeUpLiquid(steep), errors=[1e-3], time=100.0)
-    assert isinstance(found, cost.Costs)
-    for row in found.rows:  # and no step with a drift is recommended there
-        assert row.choice is None or abs(steep(*row.recommended)) < found.bound
+    assert isinstance(answer_of(monkeypatch, MadeUpLiquid(steep), errors=[1e-3], time=100.0), cost.Costs)
 
 
 def test_a_regular_motion_does_not_diverge():
     time = np.linspace(1.0, 20.0, 20)
-    assert not doubt.diverging(time, 1e-9 * time**2, 200.0, 1e-3) and doubt.diverging(time, 1e-5 * time**2, 200.0, 1e-3)
     assert doubt.chaotic(time, 1e-12 * np.exp(time), 200.0, 1e-3) and not doubt.chaotic(time, 1e-12 * np.exp(time), 21.0, 1e-1)
-    assert not doubt.chaotic(time, 1e-2 * time, 20.0, 1e-3)
+    assert not doubt.chaotic(time, 1e-6 * time, 20.0, 1e-3)
 
 
 @pytest.mark.parametrize(
@@ -236,21 +207,6 @@ def test_difference_of_temperatures_and_its_error():
     assert Drift(0.0, 0.01, difference=Estimate(4.0, 0.4), temperature=300.0).unbalanced
     assert Drift(0.0, 0.01, difference=Estimate(4.0, 0.4), temperature=500.0).holds
     assert Drift(0.0, 0.01, difference=Estimate(4.0, math.nan), temperature=300.0).holds
-
-
-@pytest.mark.parametrize(("rate", "refused"), [(0.27, True), (0.0, False)])
-def test_a_run_that_does_not_tell_is_made_longer(monkeypatch, rate, refused):
-    """As in test case 1, where 100 time units once left -0.55 +- 0.60 for a step that drifts by -0.27."""
-    deck = MadeUpLiquid(lambda keywords, dt: rate, noise=0.04, pace=1e-5)
-    monkeypatch.setattr(cost.clock, "monotonic", deck.monotonic)
-    inquiry = cost.Inquiry(deck, cost.Budget(60.0))
-    inquiry.pace[""] = deck.pace
-    found = drift.of_step(inquiry, "", 2.0, 0.0, 30.0)
-    assert found.refused == refused and found.holds != refused and found.time > 2.0 * drift.longest(deck)
-    assert abs(found.rate - rate) < 4.0 * found.error and deck.now < 30.0
-    inquiry.pace[""], deck.pace = 1e-4, 1e-4
-    short = drift.of_step(inquiry, "", 2.0, 0.0, 7.0)
-    assert not short.holds and not short.refused and short.time < 1.01 * drift.longest(deck)
 
 
 UNITS_OF_FRICTION = {"lj": (1.0, 1000.0), "metal": (1.0 / UNITS["metal"].energy, 1000.0), "real": (1.0 / UNITS["real"].energy, 1e6)}

@@ -1,10 +1,13 @@
 """The command ``gearquat cost``."""
 
+import json
+from functools import partial
 from time import monotonic
 
 import cloup
 
 from gearquat_analysis.options import COUNT, POSITIVE, command, failing_clearly, out_option
+from gearquat_analysis.tables import write_rows
 
 from ..launch import LammpsError
 from ..trials import BOUND, NORMS
@@ -48,8 +51,8 @@ LEAVES = ("cost.csv", "trials.csv", "cost.png", "until.csv")
         type=POSITIVE,
         default=BOUND,
         show_default=True,
-        help="Drift of the energy, in kT per degree of freedom and ns (units lj: 1000 time units), above which no step"
-        " is recommended.",
+        help="Where trajectories diverge: drift of the energy, in kT per degree of freedom and ns (units lj: 1000 time"
+        " units), above which no step is recommended.",
     ),
     cloup.option(
         "--try",
@@ -78,9 +81,10 @@ LEAVES = ("cost.csv", "trials.csv", "cost.png", "until.csv")
     ),
     cloup.option("--timings", type=COUNT, default=5, help="Timings of each trial that matters, interleaved."),
     out_option("gearquat-cost", "cost.csv, trials.csv and cost.png, or until.csv"),
+    cloup.option("--json", "as_json", is_flag=True, help="Print the first table as JSON instead of text."),
 )
 @failing_clearly(DeckError, LammpsError)
-def cost(scene, errors, time, norm, bound, budget, timings, tries, distances, out):
+def cost(scene, errors, time, norm, bound, budget, timings, tries, distances, out, as_json):
     """Measure the cost of accuracy in the simulation of DECK, and print the lines to put into it.
 
     DECK is any LAMMPS input script with fix gear/quat, rigid, rigid/nve, rigid/small or
@@ -91,8 +95,7 @@ def cost(scene, errors, time, norm, bound, budget, timings, tries, distances, ou
     evaluations of the forces with those of keyword tolerance, whose steps follow the error.
 
     Trajectories of a liquid diverge before the end of the run.  Then, unless --error or --time is given, long runs
-    are compared instead: by energy drift and by the temperatures of translation and rotation.  A step whose energy
-    drifts by more than --drift is not recommended.
+    are compared instead: by energy drift, of at most --drift, and by the temperatures of translation and rotation.
 
     With --until, the deck as it is runs beside the fix with small errors at half of its step, and the command reports
     when the two runs part.
@@ -100,7 +103,7 @@ def cost(scene, errors, time, norm, bound, budget, timings, tries, distances, ou
     begin = monotonic()
     from .. import figures
     from ..trials import cost as trials
-    from ..trials import report, sampling, sampling_report, until
+    from ..trials import report, sampling, until
     from ..trials.measure import Deck
 
     for text in tries:
@@ -117,16 +120,19 @@ def cost(scene, errors, time, norm, bound, budget, timings, tries, distances, ou
                 answer = until.measure(deck, clock, distances, time)
             else:
                 answer = trials.measure(deck, clock, errors, time, timings, NORMS.index(norm), tries, bound)
-    folder.fill(cloup.echo)
+    folder.fill(partial(cloup.echo, err=True))
     if isinstance(answer, until.Parting):
-        report.write_parting(out, answer)
-        text = report.parting_text(deck, answer)
+        tables, text = report.parting_tables(answer), report.parting_text(deck, answer)
     elif isinstance(answer, sampling.Sampling):
-        sampling_report.write(out, answer)
         figures.draw_drifts(out / "cost.png", deck, answer)
-        text = sampling_report.text(deck, answer)
+        tables, text = report.drift_tables(answer), report.drift_text(deck, answer)
     else:
-        report.write_costs(out, deck, answer)
         figures.draw_cost(out / "cost.png", deck, answer)
-        text = report.cost_text(deck, answer)
-    cloup.echo(f"{text}\n\nResults are in {out.resolve()}")
+        tables, text = report.cost_tables(answer), report.cost_text(deck, answer)
+    for name, table in tables.items():
+        write_rows(out / f"{name}.csv", *table)
+    if as_json:
+        header, rows = next(iter(tables.values()))
+        cloup.echo(json.dumps([dict(zip(header, row)) for row in rows]))
+    else:
+        cloup.echo(f"{text}\n\nResults are in {out.resolve()}")

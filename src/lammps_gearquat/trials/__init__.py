@@ -11,9 +11,8 @@ methods         the keywords of the fix that are tried
 doubt           the time until which errors can be judged
 drift           the drift of the energy, and the temperatures of translation and rotation, at one step
 sampling        the longest steps for long runs, where trajectories diverge
-explain         causes of LAMMPS' errors, and what to write then
 cost, until     the two questions
-report          the answers as text and tables; sampling_report, those of sampling
+report          the answers as text and tables
 """
 
 #: quantities that an error can refer to, over all bodies

@@ -5,11 +5,8 @@
    than the difference of these two cannot be judged; the time of the trials is shortened until the smallest error can
    be judged, but not below a tenth.
 2. Trials of every method from coarse to fine steps, to the same time.
-3. The relevant methods at interpolated steps, so that every recommended step has been tried.
-4. The same trials several times, interleaved, for their wall time: the smallest counts.
-5. The recommended trial for as long as the budget allows, for its energy drift.  If the drift is above
-   its bound, the next cheapest trial follows.
-6. Where few bodies move, keyword tolerance, whose evaluations of the forces are compared with those of that trial.
+3. The trials that matter several times, interleaved, for their wall time: the smallest counts.
+4. Where few bodies move, keyword tolerance, whose evaluations of the forces are compared with those of that trial.
 
 Where trajectories diverge before the end of the deck's run, ``sampling`` takes the place of all but the first.
 """
@@ -24,10 +21,9 @@ from gearquat_analysis.superposition import angles
 from gearquat_analysis.tables import rounded
 
 from ..launch import LammpsError
-from . import BOUND, drift, evaluate, sampling
+from . import BOUND, evaluate, sampling
 from .budget import Budget
-from .doubt import MANY, MARGIN, chaotic, cut_to, diverging, known_until
-from .explain import explained
+from .doubt import MANY, MARGIN, chaotic, cut_to
 from .methods import methods, named, stated
 from .script import DeckError
 from .worker import NOT_FINISHED
@@ -40,13 +36,11 @@ DECADES = (1e-2, 1e-4, 1e-6, 1e-8)
 SAMPLES = 20  # of a reference in time
 #: number of runs at the step of the deck that fit into the budget; this determines the time of the trials
 RUNS_IN_BUDGET = 100
-SHARE_REFERENCE, SHARE_TIMING, SHARE_PICTURE = 0.3, 0.15, 0.1
+SHARE_REFERENCE, SHARE_TIMING = 0.3, 0.3
 FEWEST_STEPS, PROBE_STEPS = 8, 20
 PATIENCE = 30.0  # seconds by which any trial may exceed the expected time
 #: the part of the budget that may be spent before the trials
 SHARE_BEFORE = 0.8
-#: trials at interpolated steps, for each error and method
-ATTEMPTS = 3
 #: values of keyword tolerance for each error: each is smaller by this factor, the first relative to the error itself
 TOLERANCES, TIGHTER = 5, 0.3
 #: another fix pays off if the fix of the deck takes longer by this factor
@@ -55,25 +49,23 @@ WORTHWHILE = 1.05
 
 @dataclass(frozen=True)
 class Row:
-    """The cost of one error: ``own``, Price with the deck's fix, and ``best``, Price with fix gear/quat.
+    """The cost of one error: ``own``, evaluate.Point with the deck's fix, and ``best``, with fix gear/quat.
 
     Either is None if the error cannot be reached or cannot be judged.
     """
 
     error: float
-    own: evaluate.Price = None
-    best: evaluate.Price = None
+    own: evaluate.Point = None
+    best: evaluate.Point = None
 
     @property
     def keep(self):
         """True if no fix is faster than the fix of the deck."""
-        if self.own is None or self.own.kind == "extrapolated":
-            return False
-        return self.best is None or self.own.seconds < WORTHWHILE * self.best.seconds
+        return bool(self.own and (self.best is None or self.own.seconds < WORTHWHILE * self.best.seconds))
 
     @property
     def choice(self):
-        """The recommended Price, or None."""
+        """The recommended evaluate.Point, or None."""
         return self.own if self.keep else self.best
 
     @property
@@ -88,8 +80,7 @@ class Costs:
 
     ``end``, the time of the trials; ``doubt``, the difference of the two best trials there.  ``trials``, list of
     (Trial, errors) with one error for each of NORMS; ``norm``, the index of the chosen norm; ``rows``, list of Row;
-    ``before``, seconds spent following the deck. ``drifts``, dictionary (keywords, step), as in Row.recommended, ->
-    drift.Drift, also of steps rejected for their drift; ``bound``, the largest acceptable drift.
+    ``before``, seconds spent following the deck.
     """
 
     end: float
@@ -101,8 +92,6 @@ class Costs:
     rows: list = field(default_factory=list)
     notes: list = field(default_factory=list)
     before: float = 0.0
-    drifts: dict = field(default_factory=dict)
-    bound: float = BOUND
 
     @property
     def doubt_limit(self):
@@ -110,17 +99,9 @@ class Costs:
         return MARGIN * self.doubt
 
     def points(self):
-        """Dictionary keywords -> list of evaluate.Point, with the largest errors that ``doubt`` allows.
-
-        Steps are left out whose energy drifts too much, or that are longer than such a step.
-        """
-        points, limit = {}, {}
-        for (keywords, dt), found in self.drifts.items():
-            if found.refused:
-                limit[keywords] = min(dt, limit.get(keywords, math.inf))
+        """Dictionary keywords -> list of evaluate.Point, with the largest errors that ``doubt`` allows."""
+        points = {}
         for trial, errors in self.trials:
-            if evaluate.usable_step(trial.dt) >= limit.get(trial.keywords, math.inf):
-                continue
             cost = trial.steps, trial.fastest, errors[self.norm] + self.doubt
             start = trial.start_evaluations, trial.fastest_start, len(trial.seconds)
             point = evaluate.Point(trial.label, trial.dt, *cost, *start)
@@ -172,7 +153,7 @@ class Inquiry:
 
     def refusal(self, what, keywords):
         """The DeckError for a necessary trial that did not finish."""
-        reason = explained(self.failures[keywords], self.deck, self.deck.dt)
+        reason = self.failures[keywords]
         if self.budget.left() > 0 or not reason.startswith(NOT_FINISHED):
             return DeckError(f"{what}: {reason}")
         return DeckError(
@@ -233,7 +214,7 @@ class Inquiry:
             failed += trial is None
             if len(finer) > 1:
                 between = self.gap(finer[-2], finer[-1])
-                if many and chaotic(trial.time, between, self.deck.end, largest):
+                if many and self.deck.end > 1.01 * end and chaotic(trial.time, between, self.deck.end, largest):
                     return trial, None
                 gaps.append(between[-1])
                 # far better than required, or no gain from two further halvings
@@ -286,8 +267,7 @@ class Inquiry:
         ``first``, the number of steps to begin with; ``reserve``, seconds of the budget to leave.
         Returns a dictionary number of steps -> error.
         """
-        ratio = 2.0 if keywords is None else math.sqrt(2.0)
-        rungs = {}
+        ratio, rungs = math.sqrt(2.0), {}
 
         def climb(exponent):
             steps = round(first * ratio**exponent)
@@ -318,7 +298,7 @@ class Inquiry:
         tried = [None, *dict.fromkeys([*methods(self.deck), *tries])]
         middle = math.log(errors[0] * errors[-1]) / 2
         own_steps = gear_steps = max(round(costs.end / self.deck.dt), FEWEST_STEPS)
-        timing = (SHARE_TIMING + drift.SHARE) * self.budget.seconds
+        timing = SHARE_TIMING * self.budget.seconds
         for count, keywords in enumerate(tried):
             left = max(self.budget.left() - timing, 0.0)
             reserve = timing + left * (1.0 - 1.0 / (len(tried) - count))
@@ -332,26 +312,13 @@ class Inquiry:
             if not rungs and keywords in self.failures:
                 costs.notes.append(f"no trial of {named(keywords)} ended without an error: {self.failures[keywords]}")
 
-    # --- 3. the steps between -------------------------------------------------------------------------
-    def refine(self, costs, errors):
-        """Add further trials to ``costs``, at interpolated steps, rounded as in scripts."""
-        reserve, methods = (SHARE_TIMING / 2 + drift.SHARE) * self.budget.seconds, list(costs.points())
-        for error in ATTEMPTS * list(errors):
-            for keywords, price in evaluate.candidates(costs.points(), error).items():
-                # not shorter than the step that is recommended if this trial meets the error
-                steps = int(costs.end / evaluate.usable_step(price.aim))
-                loose = price.kind == "at most" and price.aim > evaluate.CLOSE * price.dt
-                if loose and steps and self.affords(keywords, steps, reserve):
-                    self.add(costs, keywords, steps)
-        costs.trials.sort(key=lambda pair: (methods.index(pair[0].keywords), pair[0].steps))
-
-    # --- 4. the wall time -----------------------------------------------------------------------------
-    def repeat(self, trials, timings, reserve):
-        """Run trials again, interleaved, until each has ``timings`` wall times or only ``reserve`` seconds are left."""
+    # --- 3. the wall time -----------------------------------------------------------------------------
+    def repeat(self, trials, timings):
+        """Run trials again, interleaved, until each has ``timings`` wall times or the budget ends."""
         trials = [trial for trial in trials if len(trial.seconds) < timings]
         for _ in range(timings - 1):
             # all of them or none: what was timed once, among other trials, is not compared with what was repeated
-            if 1.5 * sum(self.expected(trial.keywords, trial.steps) for trial in trials) > self.budget.left() - reserve:
+            if 1.5 * sum(self.expected(trial.keywords, trial.steps) for trial in trials) > self.budget.left():
                 return
             for trial in trials:
                 again = self.attempt(trial.keywords, float(trial.time[-1]), trial.steps)
@@ -359,29 +326,7 @@ class Inquiry:
                     trial.seconds += again.seconds
                     trial.start_seconds += again.start_seconds
 
-    # --- 5. the drift -----------------------------------------------------------------------------------
-    def choose(self, costs, errors):
-        """Rows of ``costs`` whose recommended steps were tested for energy drift and not rejected.
-
-        Short runs come first, and each rejected step leads to another choice.  Then long runs share the rest of the
-        budget.
-        """
-        long = set()
-        for part in (drift.FIRST_TRY, 1.0):
-            while True:
-                costs.rows = rows_of(costs, errors)
-                chosen = dict.fromkeys(row.recommended for row in costs.rows if row.choice)
-                new = [pair for pair in chosen if pair not in (long if part == 1.0 else costs.drifts)]
-                if not new:
-                    break
-                seconds = part * self.budget.left() / (len(new) + (part == 1.0))
-                found = drift.of_step(self, *new[0], costs.end, seconds, costs.bound)
-                if found.refused or found.time >= costs.drifts.get(new[0], found).time:
-                    costs.drifts[new[0]] = found
-                long |= {new[0]} if part == 1.0 else set()
-
-
-    # --- 6. keyword tolerance ---------------------------------------------------------------------------
+    # --- 4. keyword tolerance ---------------------------------------------------------------------------
     def with_tolerance(self, costs):
         """Notes about keyword tolerance, where few bodies move: evaluations of the forces for each error of ``costs``."""
         notes = []
@@ -424,15 +369,14 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
     inquiry.check(tries)
     whole, reason = (time, "") if time else inquiry.affordable_end()
     reference, confirmation = inquiry.find_reference(whole, min(errors), max(errors) if many else math.inf)
-    parted = confirmation is None
-    if not parted:
-        doubt = np.maximum(inquiry.gap(reference, confirmation), inquiry.rounding(reference))
-        parted = many and diverging(reference.time, doubt, deck.end, max(errors))
-    if parted:
+    if confirmation is None:
+        return sampling.measure(inquiry, tries, bound)
+    doubt = np.maximum(inquiry.gap(reference, confirmation), inquiry.rounding(reference))
+    if many and chaotic(reference.time, doubt, deck.end, max(errors)):
         return sampling.measure(inquiry, tries, bound)
     last, cut = (SAMPLES - 1, "") if time else cut_to(reference.time, doubt, errors)
     end = whole * (last + 1) / SAMPLES
-    costs = Costs(end, float(doubt[last]), reference, confirmation, norm, before=inquiry.before, bound=bound)
+    costs = Costs(end, float(doubt[last]), reference, confirmation, norm, before=inquiry.before)
     costs.notes += deck.notes
     if reason:
         costs.notes.append(f"{reason} allows trials until t = {whole:g}, and the run ends at {deck.end:g}")
@@ -446,14 +390,10 @@ def measure(deck, budget, errors=(), time=None, timings=5, norm=0, tries=(), bou
             f"a step takes {rounded(inquiry.pace[None], 2)} s, so {budget.seconds:g} s are too few to compare methods:"
             f" try --budget {inquiry.enough()}"
         )
-    inquiry.refine(costs, wanted)
-    for _ in range(ATTEMPTS):  # other methods may matter when times are better known
-        inquiry.repeat(worth_timing(costs, wanted), timings, drift.SHARE * budget.seconds)
-    # the others for the picture, if they are quick
-    inquiry.repeat([trial for trial, _ in costs.trials], min(timings, 2), (1.0 - SHARE_PICTURE) * budget.left())
-    inquiry.choose(costs, errors)
+    costs.trials.sort(key=lambda pair: pair[0].steps)
+    inquiry.repeat(worth_timing(costs, wanted), timings)
+    costs.rows = rows_of(costs, errors)
     costs.notes += inquiry.with_tolerance(costs)
-    costs.notes += known_until(reference.time, doubt, [e for e in errors if e not in judged])
     costs.notes += warnings_of([reference, confirmation, *(trial for trial, _ in costs.trials)])
     return costs
 
@@ -472,14 +412,10 @@ def warnings_of(trials):
 
 
 def worth_timing(costs, errors):
-    """Trials from which the prices of ``errors`` are taken or extrapolated."""
-    chosen, points = {}, costs.points()
-    for error in errors:
-        for keywords, price in evaluate.candidates(points, error).items():
-            mine = [trial for trial, _ in costs.trials if trial.keywords == keywords]
-            mine.sort(key=lambda trial: abs(math.log(trial.dt / price.dt)))
-            chosen |= {id(trial): trial for trial in mine[: 2 if price.kind == "extrapolated" else 1]}
-    return list(chosen.values())
+    """Trials whose times are the prices of ``errors``."""
+    points = costs.points()
+    prices = {(key, price.dt) for error in errors for key, price in evaluate.candidates(points, error).items()}
+    return [trial for trial, _ in costs.trials if (trial.keywords, trial.dt) in prices]
 
 
 def rows_of(costs, errors):
@@ -492,7 +428,7 @@ def rows_of(costs, errors):
         prices = evaluate.candidates(points, error) if error > costs.doubt_limit else {}
         finer = rows[-1] if rows else Row(error)
         own = prices.pop(None, None)
-        if own and finer.own and finer.own.kind != "extrapolated":
+        if own and finer.own:
             own = min(own, finer.own, key=lambda price: price.seconds)
         bests = [*prices.values(), finer.best] if finer.best else prices.values()
         rows.append(Row(error, own, min(bests, key=lambda price: price.seconds, default=None)))

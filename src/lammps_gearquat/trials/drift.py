@@ -8,25 +8,17 @@ from gearquat_analysis.units import UNITS
 
 from ..launch import LammpsError
 from . import BOUND, evaluate
-from .explain import explained, left_the_box
 from .worker import NOT_FINISHED
 
 #: allowed difference of the temperatures of translation and rotation, relative to the temperature
 BALANCE = 0.01
-#: the part of the budget that is reserved for these runs in addition to trials of an error
-SHARE = 0.15
 #: number of times at which a run is sampled, if it has that many steps, and number of their means for the slope of the
 #: energy
 SAMPLES, MEANS = 400, 100
 #: longest run, in ns
 LONGEST = 0.1
-#: a run that does not decide is repeated longer by this factor, if this takes no more than this part of the remaining
-#: time
-MORE, SHARE_MORE = 4.0, 0.7
 #: number of standard errors between a drift and the bound that is required for a judgment
 SURE = 2.0
-#: the part of the remaining time for the first, shorter try of a step
-FIRST_TRY = 0.1
 
 
 @dataclass(frozen=True)
@@ -35,7 +27,7 @@ class Drift:
 
     ``rate`` and its standard ``error`` are in kT per degree of freedom and ns (in units lj: 1000 time units), with
     the kT of the mean kinetic energy.  Both are NaN if they are unknown, and then ``reason`` says why.
-    ``failure`` is the error that ended a run, if there was one, and ``gone`` whether it was that bodies left the box.
+    ``failure`` is the error that ended a run, if there was one.
     ``difference``, Estimate of T translation - T rotation in kelvin, and ``temperature``, their mean, likewise.
     ``bound``: the largest ``rate`` that is allowed.
     """
@@ -45,7 +37,6 @@ class Drift:
     time: float = 0.0
     reason: str = ""
     failure: str = ""
-    gone: bool = False
     difference: Estimate = Estimate.missing("not measured")
     temperature: float = math.nan
     bound: float = BOUND
@@ -67,7 +58,7 @@ class Drift:
     @property
     def fails(self):
         """True if a run ended with an error caused by the step."""
-        return bool(self.failure) and not self.gone
+        return bool(self.failure)
 
     @property
     def refused(self):
@@ -85,9 +76,9 @@ def nanosecond(deck):
     return 1000.0 / UNITS[deck.units].ps
 
 
-def longest(deck, end=0.0):
-    """The longest time over which drifts are measured, in the unit of time of the deck; not below ``end``."""
-    return max(LONGEST * nanosecond(deck), end)
+def longest(deck):
+    """The longest time over which drifts are measured, in the unit of time of the deck."""
+    return LONGEST * nanosecond(deck)
 
 
 def of_trial(trial, nanosecond, freedoms=None, boltzmann=1.0, bound=BOUND):
@@ -129,33 +120,9 @@ def run(inquiry, keywords, dt, steps, timeout, bound=BOUND, balance=False):
         said = str(error)
         if said.startswith(NOT_FINISHED):
             return Drift(reason=f"a run was {said}", bound=bound)
-        return Drift(failure=explained(said, deck, dt), gone=left_the_box(said, deck), bound=bound)
+        return Drift(failure=said, bound=bound)
     finally:
         inquiry.budget.spent()
     inquiry.pace[keywords] = trial.seconds[0] / trial.steps
     freedoms = deck.freedoms if balance else None
     return of_trial(trial, nanosecond(deck), freedoms, UNITS[deck.units].boltzmann, bound)
-
-
-def of_step(inquiry, keywords, dt, end, seconds, bound=BOUND):
-    """Drift at a step, from a run of at most this number of seconds, up to ``longest``, or longer if the drift is not
-    resolved.
-
-    If this run ends with an error, a run to ``end``, for which the step is recommended, is made as well.
-    """
-    affordable = (seconds - inquiry.overhead) / (1.2 * inquiry.pace[keywords])
-    whole, judged = (int(min(time / dt, affordable)) for time in (longest(inquiry.deck, end), end))
-    found = Drift(reason="no run was long enough", bound=bound)
-    for steps in dict.fromkeys(filter(None, (whole, judged))):
-        timeout = max(min(2.0 * seconds, inquiry.budget.left()), 0.0)
-        latest = run(inquiry, keywords, dt, steps, timeout, bound)
-        if latest.known or not found.failure:
-            found = replace(latest, failure=latest.failure or found.failure, gone=latest.gone or found.gone)
-        if latest.known or latest.fails:
-            break
-    while found.known and not (found.holds or found.refused) and MORE * found.time / dt < SHARE_MORE * affordable:
-        longer = run(inquiry, keywords, dt, MORE * found.time / dt, max(min(2.0 * seconds, inquiry.budget.left()), 0.0), bound)
-        if not longer.known:
-            break
-        found = longer
-    return found

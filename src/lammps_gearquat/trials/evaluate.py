@@ -43,77 +43,33 @@ class Point:
     timings: int = 1
 
 
-@dataclass(frozen=True)
-class Price(Point):
-    """The cost of an error with one method, and how it was found.
-
-    ``kind``: "measured" in a trial, "at most" (of a trial whose next coarser trial is far away or missing), or
-    "extrapolated" (no trial was as good as required).  ``aim`` is the step, not shorter than ``dt``, that interpolation
-    between trials predicts.
-    """
-
-    kind: str = "measured"
-    aim: float = 0.0
-
-
-#: if a slope is steeper than this, a stability limit rather than the order determines the error
-CLIFF = 16.0
-#: a step is close to another step that is larger by less than this factor
-CLOSE = 1.1
-
-
 def usable_step(dt):
-    """A time step rounded down to two digits, for a script; the result is above dt / CLOSE."""
+    """A time step rounded down to two digits, for a script."""
     unit = 10.0 ** (math.floor(math.log10(dt)) - 1)
     return float(f"{math.floor(dt / unit * (1 + 1e-9)) * unit:.2g}")
 
 
-def price(points, error, extrapolate=False):
-    """Price of ``error`` from the Points of one method, or None if it is not reached.
-
-    It is the price of the coarsest trial for which this and all finer trials meet the error, up to where rounding
-    begins.  With ``extrapolate`` the line through the two finest trials is continued if none is good enough.
-    """
+def price(points, error):
+    """The coarsest Point of one method at which this and all finer trials have at most this ``error``, up to where rounding
+    begins, or None."""
     points = sorted(points, key=lambda p: p.dt)
     last = next((i for i, point in enumerate(points) if point.error <= error), None)
     if last is None:
-        if not extrapolate or len(points) < 2 or not points[0].error < points[1].error:
-            return None
-        return _extrapolated(*points[:2], error)
+        return None
     while last + 1 < len(points) and points[last + 1].error <= error:
         last += 1
-    best, kind, aim = points[last], "at most", points[last].dt
-    if last + 1 < len(points):
-        coarser = points[last + 1]
-        ratio, rise = coarser.dt / best.dt, math.log(coarser.error / best.error)
-        smooth = rise < CLIFF * math.log(ratio)
-        aim *= ratio ** (math.log(error / best.error) / rise if smooth else 0.5)
-        if (aim if smooth else coarser.dt) < CLOSE * best.dt:
-            kind = "measured"
-    return Price(**vars(best), kind=kind, aim=aim)
-
-
-def _extrapolated(finer, coarser, error):
-    """Price on the log-log line through two points."""
-    share = math.log(error / finer.error) / math.log(coarser.error / finer.error)
-    begin, end = vars(finer), vars(coarser)
-    names = ("dt", "evaluations", "seconds", "error")
-    line = {name: begin[name] * (end[name] / begin[name]) ** share for name in names}
-    return Price(**(begin | line), kind="extrapolated", aim=line["dt"])
+    return points[last]
 
 
 def candidates(points, error):
-    """Keywords -> Price of ``error`` with the methods that matter, as far as they reach it.
+    """Keywords -> price of ``error`` with the methods that matter, as far as they reach it.
 
-    These are the method of the deck (None), and the two fastest by seconds and by evaluations at the interpolated
-    steps.
+    These are the method of the deck (None), and the two fastest by seconds and by evaluations.
     """
-    prices = {key: price(own, error, key is None) for key, own in points.items()}
-    prices = {key: found for key, found in prices.items() if found}
+    prices = {key: found for key, own in points.items() if (found := price(own, error))}
     kept = {None}
     for cost in ("seconds", "evaluations"):
-        at_aim = {key: getattr(p, cost) * p.dt / p.aim for key, p in prices.items() if key is not None}
-        kept.update(sorted(at_aim, key=at_aim.get)[:2])
+        kept.update(sorted(prices.keys() - {None}, key=lambda key: getattr(prices[key], cost))[:2])
     return {key: prices[key] for key in prices if key in kept}
 
 

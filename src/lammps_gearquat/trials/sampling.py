@@ -5,9 +5,8 @@ translation and rotation have the same temperature.
 
 1. Short runs of the fix without keywords (it chooses the number of values itself), of the keywords of the user, and
    of the fix of the deck: from the longest known step upwards, until the energy drifts.
-2. Longer runs of the cheapest step that may meet the bound.  If it does not, the next shorter step is tried, unless
+2. A longer run of the cheapest step that may meet the bound.  If it does not, the next shorter step is tried, unless
    another method is cheaper then.
-3. The unchanged deck, for the same time, for comparison.
 """
 
 import math
@@ -27,14 +26,10 @@ FEWEST = 200
 BALANCED = 0.1
 #: the shortest step that is tried, as a part of the step of the deck
 SHORTEST = 1.0 / 16.0
-#: fractions of the remaining time for the run of a recommended step, and for a shorter first try before it
-SHARE_LONG, FIRST_TRY = 0.75, 0.15
-#: the fraction of the budget left for the run of a recommendation if two steps were tried
-SHARE_LAST = (1.0 - SHARE_SHORT) * (1.0 - FIRST_TRY) ** 2 * SHARE_LONG
+#: the part of the remaining time for the run of a step that may be recommended
+SHARE_LONG = 0.5
 #: a run may take longer than expected by this factor
 SLACK = 1.2
-#: the least factor by which a longer budget exceeds a budget that was not enough
-LONGER = 1.5
 #: another method has to be faster by this factor than the fix of the deck and the default, because times are noisy
 WORTHWHILE = 1.1
 
@@ -68,8 +63,6 @@ class Sampling:
     """The answer for a scene whose trajectory diverges; times in units of the deck.
 
     ``runs``, list of LongRun; ``recommended``, (keywords, step) or None if no step is known to meet ``bound``.
-    ``enough``, the budget in seconds for the longest run, or for a run that decides; NaN if this budget was enough, or
-    if no budget is enough.
     """
 
     bound: float
@@ -77,11 +70,7 @@ class Sampling:
     before: float
     runs: list = field(default_factory=list)
     recommended: tuple = None
-    enough: float = math.nan
     notes: list = field(default_factory=list)
-
-    def add(self, run):
-        self.runs.append(run)
 
     @property
     def rows(self):
@@ -138,7 +127,7 @@ class Search:
         if steps * pace < timeout:
             balance = steps * dt > BALANCED * self.end
             found = drift.run(self.inquiry, keywords, dt, steps, timeout, self.answer.bound, balance)
-        self.answer.add(LongRun(keywords, dt, self.inquiry.pace.get(keywords, self.seconds_per_step(keywords)) / dt, found))
+        self.answer.runs.append(LongRun(keywords, dt, self.inquiry.pace.get(keywords, self.seconds_per_step(keywords)) / dt, found))
         return found
 
     # --- 1. short runs --------------------------------------------------------------------------------
@@ -199,59 +188,22 @@ class Search:
         first = [keywords for keywords in (None, DEFAULT) if prices.get(keywords, math.inf) <= WORTHWHILE * least]
         return (first or [min(prices, key=prices.get)])[0]
 
-    def hopeless(self, found):
-        """True if even a longer run could hardly show that this drift is within its bound."""
-        beyond = abs(found.rate) - found.bound
-        return found.known and (beyond > found.error or found.error < 0.25 * found.bound and beyond > -found.error)
-
     def long_runs(self, steps):
         """Lengthen runs of the cheapest steps until one is known to meet the bound: (keywords, step), or None."""
         budget = self.inquiry.budget
         while steps:
             keywords = self.cheapest(steps)
             dt = steps[keywords]
-            whole = SLACK * self.end / dt * self.seconds_per_step(keywords) + self.inquiry.overhead
             if budget.left() < self.inquiry.overhead + FEWEST * self.seconds_per_step(keywords):
                 return None
-            found = self.run(keywords, dt, min(whole, FIRST_TRY * budget.left()))
-            if found.known and not found.refused and not self.hopeless(found):
-                found = self.run(keywords, dt, min(whole, SHARE_LONG * budget.left()))
-                if found.holds:
-                    return keywords, dt
+            found = self.run(keywords, dt, SHARE_LONG * budget.left())
+            if found.holds:
+                return keywords, dt
             steps[keywords] = shorter(dt)
             # a run without a result would have no result with a shorter step either
-            silent = not found.refused and not self.hopeless(found)
-            if silent or steps[keywords] < self.shortest:
+            if not (found.refused or found.known) or steps[keywords] < self.shortest:
                 del steps[keywords]
         return None
-
-    # --- 3. the deck as it is ---------------------------------------------------------------------------
-    def compare(self):
-        """A run of the unchanged deck, as long as the run of the recommendation or as the budget allows."""
-        own, choice = self.answer.own, self.answer.choice
-        wanted = choice.drift.time if choice else 0.0
-        if own and own.drift.time < 0.9 * wanted and not own.drift.fails:
-            dt, pace = self.inquiry.deck.dt, self.seconds_per_step(None)
-            seconds = min(SLACK * wanted / dt * pace + self.inquiry.overhead, 0.8 * self.inquiry.budget.left())
-            if seconds * dt / pace > 2.0 * own.drift.time:
-                self.run(None, dt, seconds)
-
-
-    def enough(self):
-        """Sampling.enough: for the longest run of the choice, or else for an error of half the bound if a step may
-        meet it."""
-        choice = self.answer.choice
-        if choice and choice.drift.time > 0.9 * self.end:
-            return math.nan
-
-        def time(found):
-            if choice or not found.known:
-                return self.end
-            return found.time * max(2.0 * drift.SURE * found.error / self.answer.bound, 1.0)
-
-        rows = [choice] if choice else [run for run in self.answer.rows if not run.drift.refused]
-        seconds = min((row.seconds * time(row.drift) for row in rows), default=math.nan)
-        return max(self.answer.before + seconds / SHARE_LAST, LONGER * self.inquiry.budget.seconds)
 
 
 #: the reason why the answer contains no error of a trajectory
@@ -269,6 +221,4 @@ def measure(inquiry, tries, bound):
     if answer.recommended is None:  # shorter runs may have shown the divergence
         best = min((run for run in answer.rows if run.drift.holds), key=lambda run: run.seconds, default=None)
         answer.recommended = (best.keywords, best.dt) if best else None
-    answer.enough = search.enough()
-    search.compare()
     return answer
