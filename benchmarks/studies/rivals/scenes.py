@@ -87,7 +87,7 @@ class Center(Cage):
 # --- scenes ---------------------------------------------------------------------------------------
 @dataclass(frozen=True, eq=False)
 class Scene(accuracy.Scene):
-    """A scene of accuracy, of which the error may also be that of "sites".
+    """A scene of the study of accuracy, whose error may also be that of "sites".
 
     ``steps``: numbers of steps of the fix, ascending; ``tolerances`` of methods that control their steps;
     ``evaluations``: approximate numbers for splittings; ``path`` of the deck, if it is not one of the examples.

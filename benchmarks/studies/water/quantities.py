@@ -74,7 +74,7 @@ def colder(name):
 
 @dataclass(frozen=True)
 class Quantity:
-    """What is read from samples: its ``name`` with its ``unit``; ``read(list of samples)``; ``sign``: "+" for differences."""
+    """A quantity that is read from samples: ``name`` and ``unit``; ``read(list of samples)``; ``sign``: "+" for differences."""
 
     name: str
     unit: str

@@ -127,8 +127,8 @@ def estimates(integrands, replica, parted, functions):
 
     ``integrands``: name -> (n,); ``replica`` (n,), from 0 to REPLICAS - 1, equally many of each.  Errors are those of the
     jackknife over replicas; the factor (R - 1) / (R - 3) makes them the variance of Student's distribution with R - 1
-    degrees of freedom, which value / jackknife error follows.  What flights that have not ``parted`` (n,) contribute is
-    added to them.
+    degrees of freedom, which value / jackknife error follows.  The contributions of
+    flights that have not ``parted`` (n,) are added to them.
     """
     values = np.column_stack(list(integrands.values()))
     whole, ended = values.mean(axis=0), (values * parted[:, None]).mean(axis=0)

@@ -38,7 +38,7 @@ EXTENDED = ("radius", "mu", "ellipsoid", "line", "tri", "body")
 UNTURNED = (1.0, 0.0, 0.0, 0.0)
 #: steps between two looks at the distance of the bodies
 STEPS = 15
-#: number of poses and of distances, and the highest energy, of which the envelope of the potential consists
+#: number of poses, number of distances and highest energy of the envelope of the potential
 POSES, DISTANCES, HIGHEST = 4, 200, 1e100
 _CUTOFF = re.compile(r"master list distance cutoff = (\S+)")
 

@@ -30,7 +30,7 @@ class Point:
     """A trial as a point of the work-precision diagram.
 
     ``evaluations`` of the forces and ``seconds`` count its steps; ``start_evaluations`` and ``start_seconds`` count
-    the start before the first step.  ``timings``: the number of runs of which ``seconds`` is the fastest.
+    the start before the first step.  ``seconds`` is the time of the fastest of ``timings`` runs.
     """
 
     method: str
