@@ -82,8 +82,8 @@ def test_block_of_the_page():
     key = SPCE.key, AUTOMATIC.key
     finding = study.find(results({(*key, 2.0): -0.27}, [(*key, 3.0)]))
     first = finding.tables["drift"].rows[0]
-    assert float(first[2].split()[0]) == pytest.approx(-0.27, rel=1e-2)
-    assert first[4] == "1 of 5 lost, after 0.2 ps"
+    assert float(first[3].split()[0]) == pytest.approx(-0.27, rel=1e-2)
+    assert first[5] == "1 of 5 lost, after 0.2 ps"
     assert render("liquids.md.j2", study.STUDY, finding, "Somewhere.").count("1 of 5 lost") == 2
 
 
