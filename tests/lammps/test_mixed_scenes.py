@@ -168,7 +168,7 @@ set group others charge 0.0
 @pytest.fixture(params=SOLVENT)
 def solution(request, box):
     """Half of the molecules are rigid; the others are flexible, or single atoms, and moved by fix nve."""
-    box.ranks = 4 if request.param == "flexible" else 1
+    box.ranks = 2 if request.param == "flexible" else 1
     if request.param == "flexible":
         box.data = with_bonds(box.data)
     box.before = SOLVENT[request.param] + "\nfix others others nve\n"
