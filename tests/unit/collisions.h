@@ -53,6 +53,7 @@ struct Collision {
   Molecule molecules[2];
   BodyState start[2] = {};
   double time;    ///< when the bodies have met and separated, or orbited each other for a while
+  mutable long calls = 0;    ///< of the potential, for benchmarks/studies/collisions
 
   explicit Collision(int which)
   {
@@ -81,6 +82,7 @@ struct Collision {
   /// For sites at rotation matrices of quaternions of any length; loads: of both, or null.
   double potential(const BodyState *states, Load *loads) const
   {
+    ++calls;
     vector<std::array<double, 3>> arms[2];
     for (int k = 0; k < 2; ++k) {
       double axes[9];
