@@ -277,21 +277,6 @@ def test_command_converts(water, tmp_path, suffix, wrap):
         assert np.abs(apart).max() < 0.0101
 
 
-def test_command_tells_of_stays(tmp_path):
-    motion = dumps.Motion([3, 3])
-    motion.center, motion.velocity = np.array([[0.0, 0, 0], [20, 0, 0]]), np.eye(3)[[0, 0]] * 0.5
-    path = dumps.write(tmp_path / "stay.dump", motion, np.arange(8.0))
-    (tmp_path / "places").write_text("0 0 0\n20 0 0\n")
-    result = analyze(path, tmp_path, "--near", tmp_path / "places", "--radius", 1.75)
-    assert result.exit_code == 0, result.output
-    for kind in ("(T1)3-1", "(T1)3-2"):  # their masses differ
-        assert f"{kind} made 1 stay within 1.75 of 2 places, in 50.0% of the time." in result.output
-    survival = columns(tmp_path / "survival.csv")
-    assert len(survival.dtype.names) == 3
-    rows = columns(tmp_path / "stays.csv")
-    assert rows["place"].tolist() == [1, 2] and rows["end"].tolist() == [3, 3]
-
-
 def test_command_says_when_frames_are_too_far_apart(tmp_path):
     for omega, said in ((2.0, True), (0.02, False)):
         path = dumps.write(tmp_path / "far.dump", dumps.Motion([4], omega=omega), np.arange(8.0))
@@ -307,11 +292,9 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
         (["--select", "foo 99"], "--select 'foo 99': Unknown selection token: 'foo'"),
         (["--reference", "nofile"], "--reference nofile: 'principal', 'first' or a file with x"),
         (["--timestep", "0"], "'--timestep': 0.0 is not in the range x>0"),
-        (["--near", __file__, "--radius", "1"], f"--near {__file__}: a file with x y z in each"),
         (["--wrap"], "--wrap works only with --convert"),
         (["--frames", "99:"], "no frame is selected"),
         (["--frames", "a:b"], "START:STOP:STEP is required"),
-        (["--near", __file__], "should be provided together"),
         (
             ["--convert", "poses.nonsense", "--units", "lj", "--timestep", "1"],
             "MDAnalysis writes no trajectories in this format; one such as dcd, xtc,",

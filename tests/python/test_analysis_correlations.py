@@ -1,13 +1,12 @@
-"""Mean squares, correlations and stays of known motions, compared with direct sums."""
+"""Mean squares and correlations of known motions, compared with direct sums."""
 
 from support import dumps
 import numpy as np
 import pytest
-from MDAnalysis.lib.correlations import autocorrelation
 from scipy.spatial.transform import Rotation
 
 from gearquat_analysis.bodies import directions
-from gearquat_analysis import Poses, correlations, open_dump, residence
+from gearquat_analysis import Poses, correlations, open_dump
 
 RNG = np.random.default_rng(8)
 FRAMES, BODIES = 40, 7
@@ -126,70 +125,6 @@ def test_what_cannot_be_correlated():
         correlations.orientation_correlation(q, [0, 0, 1], 3)
     with pytest.raises(ValueError, match="an axis must not have zero length"):
         correlations.orientation_correlation(q, [0, 0, 0])
-
-
-# --- stays ---------------------------------------------------------------------------------------
-PLACES = np.array([[0.0, 0, 0], [10, 0, 0]])
-
-
-def visiting(places):
-    """Centers (F, 1, 3) at 0.1 from the places with these numbers; -1 is nowhere."""
-    at = np.array([[0.1, 0, 0], [10.1, 0, 0], [50, 0, 0]])
-    return at[list(places)][:, None, :]
-
-
-def test_stays_are_those_made_up():
-    center = visiting([0, 0, 0, -1, -1, 1, 1, 0, 0, 0])
-    time = 0.5 * np.arange(10)
-    found = residence.stays(center, PLACES, 1.0, time)
-    rows = np.column_stack([found.body, found.place, found.begin, found.end])
-    assert rows.tolist() == [[0, 0, 0, 3], [0, 1, 5, 7], [0, 0, 7, 10]]
-    assert found.complete.tolist() == [False, True, False]
-    assert found.fraction().tolist() == [0.6, 0.2]
-    # 8 origins; at a lag of 1 the last origin is missing, and 3 - 1, 2 - 1, 3 - 1 bodies are still there
-    assert found.survival()[:3] == pytest.approx([1.0, 5 / 7, 2 / 6])
-    assert residence.stays(center, PLACES, 0.05, time).body.tolist() == []
-
-
-def test_stays_at_uneven_times():
-    """A frame is weighted by the time it represents, and there is no lag for a survival function."""
-    time = np.array([0.0, 0.1, 0.2, 0.3, 1.3, 2.3, 3.3])
-    found = residence.stays(visiting([0, 0, 0, 0, 1, 1, -1]), PLACES, 1.0, time)
-    expected = np.array([0.1 + 0.1 + 0.1 + 0.55, 1.0 + 1.0]) / (0.1 + 0.1 + 0.1 + 0.55 + 1.0 + 1.0 + 1.0)
-    assert found.fraction() == pytest.approx(expected, rel=1e-12)
-    with pytest.raises(ValueError, match="frames that are evenly spaced in time"):
-        found.survival()
-
-
-def test_the_nearest_place_counts():
-    points = np.array([[4.0, 0, 0], [6.0, 0, 0], [-9.5, 0, 0], [0, 30, 0]])
-    found = residence.stays(points[None], PLACES, 7.0, [0.0])
-    assert (found.body.tolist(), found.place.tolist()) == ([0, 1], [0, 1])
-
-
-def test_survival_of_many_is_that_of_mdanalysis():
-    """All origins have equally many bodies: then means of ratios are the ratio of means."""
-    rng = np.random.default_rng(2)
-    where = np.zeros((30, 8), dtype=int)
-    where[0] = np.arange(8) % 2
-    for k in range(1, 30):
-        where[k] = where[k - 1]
-        pair = 2 * rng.integers(4) + np.arange(2)
-        where[k, pair] = where[k, pair[::-1]]
-    center = PLACES[where] + 0.01
-    found = residence.stays(center, PLACES, 1.0, np.arange(30.0)).survival()
-    sets = [{(b, place) for b, place in enumerate(row)} for row in where]
-    _, expected, _ = autocorrelation(sets, 20)
-    assert found[:21] == pytest.approx(expected, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("places", "radius", "text"),
-    [([[0, 0]], 1.0, "three coordinates each"), (PLACES, 0.0, "radius 0: it must be above zero")],
-)
-def test_impossible_places(places, radius, text):
-    with pytest.raises(ValueError, match=text):
-        residence.stays(np.zeros((2, 1, 3)), places, radius, [0, 1])
 
 
 def test_times_of_frames():

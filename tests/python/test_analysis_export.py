@@ -123,20 +123,3 @@ def test_pictures_show_values_with_errors(poses):
     assert squares.get_xlabel() == "lag (ps)"
     energy, deviation = pictures.draw_totals(poses, poses.totals()).axes
     assert energy.get_ylabel() == "energy (eV)" and deviation.get_xlabel() == "time (ps)"
-
-
-def test_motion_of_one_body(tmp_path):
-    """Its axes turn with it; a linear body has one, and a point none."""
-    motion = dumps.Motion([3, 2, 1], linear=[1])
-    poses = Poses(open_dump(dumps.write(tmp_path / "x.dump", motion, TIMES[:5])).atoms, reference="principal").run()
-    center, axes = poses.motion(1)
-    assert center[4] == pytest.approx(motion.centers(4.0)[0])
-    turn = (motion.turns(4.0) * motion.turns(0.0).inv())[0]
-    for values in axes.values():
-        assert values[4] == pytest.approx(turn.apply(values[0]), abs=1e-12)
-    assert [list(poses.motion(body)[1]) for body in (1, 2, 3)] == [[1, 2, 3], [3], []]
-    assert [len(pictures.draw_motion(poses, body).axes) for body in (1, 2, 3)] == [2, 2, 1]
-    said = dumps.analyze(tmp_path / "x.dump", tmp_path, "--follow", 4)
-    assert said.exit_code == 1 and "no body has the ID 4; the first ID is 1, and the last 3" in said.output
-    assert dumps.analyze(tmp_path / "x.dump", tmp_path, "--follow", 2).exit_code == 0
-    assert (tmp_path / "motion.png").read_bytes().startswith(b"\x89PNG")

@@ -182,7 +182,7 @@ def test_collisions_are_averaged(pasted, lmp_wheel):
     passes(lmp_wheel, script)
     said = pasted("scatter")
     table = (lmp_wheel.folder / "gearquat-scatter" / "flights.csv").read_text().splitlines()
-    value, error = map(float, re.search(r"Omega\(1,1\) +(\S+) +(\S+)", said).groups())
+    value, error = map(float, re.search(r"Omega\(1,1\) +(\S+) ± (\S+)", said).groups())
     assert error <= 0.1 * value
     columns = {name for row in re.findall(r"^\| (`.*?) \|", blocks_of_columns(), re.M) for name in re.findall(r"`(\w+)`", row)}
     assert columns == set(table[0].split(","))

@@ -1,7 +1,7 @@
 """Analysis of rigid bodies with MDAnalysis: poses, motion, correlations.
 
 ``dump`` reads LAMMPS dumps as universes.  ``poses`` has the analyses Poses and TablePoses, ``correlations`` the mean
-squares and autocorrelations of their results, ``residence`` stays near given places, and ``convert`` trajectories for
+squares and autocorrelations of their results, and ``convert`` trajectories for
 other viewers.  They use ``bodies`` (assignment of sites to bodies) and ``superposition``.
 
     from gearquat_analysis import Poses, correlations, open_dump

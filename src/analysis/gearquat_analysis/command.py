@@ -6,15 +6,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import cloup
-from cloup.constraints import all_or_none
 
 from .options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option, progress_bar
 from .units import UNITS, style_of
 
 
 #: files that the command writes in addition to poses.npy
-LEAVES = ("bodies.csv", "totals.csv", "totals.png", "motion.png", "poses.csv", "correlations.csv", "correlations.png")
-LEAVES += ("averages.csv", "averages.png", "spectra.csv", "rdf.csv", "stays.csv", "survival.csv")
+LEAVES = ("bodies.csv", "totals.csv", "totals.png", "poses.csv", "correlations.csv", "correlations.png")
+LEAVES += ("averages.csv", "averages.png", "spectra.csv", "rdf.csv")
 #: options that determine the results; a folder with results is identified by them
 DECIDE = ("data", "atom_style", "body", "select", "reference", "potential", "units", "timestep")
 
@@ -79,12 +78,6 @@ def _telling_warnings():
     cloup.option("--frames", callback=_frames, metavar="START:STOP:STEP", help="Frames to read."),
 )
 @cloup.option_group(
-    "Stays of bodies near given places, such as the sites of a cage",
-    cloup.option("--near", type=FILE, help="File with places, x y z in each line."),
-    cloup.option("--radius", type=POSITIVE, help="Distance within which a body is near a place."),
-    constraint=all_or_none,
-)
-@cloup.option_group(
     "Structure",
     cloup.option(
         "--rdf",
@@ -98,7 +91,6 @@ def _telling_warnings():
 @cloup.option_group(
     "Output and processes",
     out_option("gearquat-analyze", "tables and pictures"),
-    cloup.option("--follow", type=int, metavar="ID", help="Also draw the motion of one body, motion.png."),
     cloup.option("--csv", "as_csv", is_flag=True, help="Also write every pose as text, poses.csv."),
     cloup.option(
         "--convert",
@@ -111,7 +103,7 @@ def _telling_warnings():
 )
 @failing_clearly(ValueError)
 @_telling_warnings()
-def analyze(dump, out, near, radius, frames, rdf, converted, wrap, as_csv, follow, **options):
+def analyze(dump, out, frames, rdf, converted, wrap, as_csv, **options):
     """Analyze rigid bodies in a LAMMPS dump, and convert it (--convert).
 
     DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities, or a 'dump local' of
@@ -127,8 +119,7 @@ def analyze(dump, out, near, radius, frames, rdf, converted, wrap, as_csv, follo
         require_format(converted)
     if wrap and not converted:
         raise ValueError("--wrap works only with --convert")
-    places = near and _points("--near", near)
-    asked = {name: options[name] for name in DECIDE} | {"near": near, "radius": radius}
+    asked = {name: options[name] for name in DECIDE}
     asked |= {"frames": [frames.start, frames.stop, frames.step], "rdf": [list(pair) for pair in rdf]}
     folder = Folder(out, dump, asked, LEAVES)
     if converted:
@@ -138,15 +129,11 @@ def analyze(dump, out, near, radius, frames, rdf, converted, wrap, as_csv, follo
     report.write_bodies(out / "bodies.csv", poses)
     totals = report.write_totals(out / "totals.csv", poses)
     pictures.draw_totals(poses, totals, out / "totals.png")
-    if follow is not None:
-        pictures.draw_motion(poses, follow, out / "motion.png")
     if as_csv:
         poses.to_csv(out / "poses.csv", _bar("writing poses.csv", "frame"))
     _correlate(out, poses)
     if rdf:
         _distribute(out, poses, rdf, frames)
-    if near:
-        _stay(out, poses, places, radius)
     if converted:
         folder.note(_convert(poses, converted, wrap, frames))
     cloup.echo(report.summary(poses, totals))
@@ -287,32 +274,6 @@ def _distribute(out, poses, pairs, frames):
         top = int(g.argmax())
         cloup.echo(f"g(r) of '{first}' and '{second}' has its largest value, {g[top]:.3g}, at {r[top]:.3g}.")
     write_columns(out / "rdf.csv", columns)
-
-
-def _stay(out, poses, places, radius):
-    """Write stays.csv and survival.csv, and print how long bodies of each kind stay."""
-    from . import report, residence
-    from .kinds import kinds
-    from .tables import write_columns
-
-    results = poses.results
-    bar = _bar("finding stays", "frame")
-    stays = residence.stays(results.center, places, radius, results.time, progress=bar)
-    report.write_stays(out / "stays.csv", stays, results.ids)
-    columns = {"lag": stays.time - stays.time[0]}
-    for kind in kinds(poses):
-        some = stays.of(kind.bodies) if kind.name else stays
-        try:
-            columns[f"survival_{kind.name}" if kind.name else "survival"] = some.survival()
-        except ValueError:
-            columns = {}
-        cloup.echo(
-            f"{kind.name or 'Bodies'} made {report.counted(len(some.body), 'stay')} within {radius:g} of"
-            f" {report.counted(len(places), 'place')}, in {some.fraction().sum():.1%} of the time."
-        )
-    if not columns:
-        return cloup.echo("survival.csv was not written: it needs frames that are evenly spaced in time.")
-    return write_columns(out / "survival.csv", columns)
 
 
 def _convert(poses, path, wrap, frames):

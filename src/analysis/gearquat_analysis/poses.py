@@ -19,7 +19,6 @@ import numpy as np
 from MDAnalysis.analysis.base import AnalysisBase
 from MDAnalysis.analysis.results import Results, ResultsGroup
 from MDAnalysis.exceptions import NoDataError
-from scipy.spatial.transform import Rotation
 
 from .tables import flat
 from .units import UNITS, style_of, unit_of
@@ -186,21 +185,6 @@ class _FrameTable(AnalysisBase):
                 sums["momentum"][k] = momentum.sum(axis=0)
                 sums["angular_momentum_space"][k] += np.cross(frame["center"], momentum).sum(axis=0)
         return sums
-
-    def motion(self, body):
-        """Center (F, 3) of the body with this ID, and its principal axes in space, axis -> (F, 3), counted from 1.
-
-        A linear body has axis 3 only, and a point none.  Raises ValueError if there is no such body.
-        """
-        if body not in self.ids:
-            raise ValueError(f"no body has the ID {body}; the first ID is {self.ids[0]}, and the last {self.ids[-1]}")
-        place = list(self.ids).index(body)
-        own, known = np.eye(3), range(3)
-        if bodies := getattr(self, "bodies", None):
-            own = bodies.axes[place]
-            known = () if bodies.point[place] else (2,) if bodies.linear[place] else range(3)
-        turn = Rotation.from_quat(np.array(self.results.q[:, place]), scalar_first=True)
-        return np.array(self.results.center[:, place]), {k + 1: turn.apply(own[k]) for k in known}
 
     def unit(self, result):
         """Unit of a result, such as "Å/fs" for ``velocity``; "" without units.

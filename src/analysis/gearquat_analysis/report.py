@@ -34,13 +34,6 @@ def write_bodies(path, poses):
     return write_rows(path, header, rows)
 
 
-def write_stays(path, stays, ids):
-    """Write a row for each stay: body, place (from 1), times of the first and last frame, True if complete."""
-    columns = ids[stays.body], stays.place + 1, stays.time[stays.begin]
-    rows = zip(*columns, stays.time[stays.end - 1], stays.complete)
-    write_rows(path, ["body", "place", "begin", "end", "complete"], rows)
-
-
 def write_averages(path, averages):
     """Write a row for each Average: name, value, standard error, unit, and the reason if an error is unknown."""
     blank = [[*row[:1], *("" if np.isnan(x) else x for x in row[1:3]), *row[3:]] for row in averages]

@@ -4,6 +4,7 @@ import csv
 import math
 
 import numpy as np
+from uncertainties import ufloat
 
 
 def write_rows(path, header, rows):
@@ -51,38 +52,13 @@ def rounded(value, digits=3):
 def with_error(value, error, unit="", sign=""):
     """Text of a number and its standard error: the error has two digits, and the number has the same decimals.
 
-    ``sign``: "+" in front of numbers that are not negative.
+    ``sign``: "+" in front of numbers that are not negative.  Six digits of the number if the error is not above zero.
 
-    >>> with_error(86.2, 10.3), with_error(0.3124, 0.0153, "Å"), with_error(2.744e-4, 1.9e-5)
-    ('86 ± 10', '0.312 ± 0.015 Å', '(2.74 ± 0.19)e-4')
+    >>> with_error(86.2, 10.3), with_error(0.3124, 0.0153, "Å"), with_error(-4e-5, 2.5e-5)
+    ('86 ± 10', '0.312 ± 0.015 Å', '(-4.0 ± 2.5)e-5')
     """
-    both, power = _decimals(value, error)
-    joined = " ± ".join(both)
-    return sign * bool(value >= 0) + (f"({joined})e{power}" if power else joined) + f" {unit}" * bool(unit)
-
-
-def error_cells(value, error):
-    """Number and error as two cells of a table, rounded as in ``with_error``.
-
-    >>> error_cells(86.2, 10.3), error_cells(2.744e-4, 1.9e-5), error_cells(1.5, float("nan"))
-    (('86', '10'), ('2.74e-4', '0.19e-4'), ('1.5', ''))
-    """
-    both, power = _decimals(value, error)
-    if len(both) == 1:
-        return (*both, "0" if error == 0.0 else "")
-    return tuple(f"{text}e{power}" if power else text for text in both)
-
-
-def _decimals(value, error):
-    """((number, error) as text, power of ten); if the error is not positive, the number has six digits and no error."""
-    if not (math.isfinite(value) and math.isfinite(error) and error > 0.0):
-        return (rounded(value, 6),), 0
-    last = _power(error, 2) - 1
-    power = max(_power(value, 6), _power(error, 2)) if value else _power(error, 2)
-    power = power if not -4 < power < 6 else 0
-    return tuple(f"{round(x, -last) / 10.0**power + 0.0:.{max(power - last, 0)}f}" for x in (value, error)), power
-
-
-def _power(value, digits):
-    """The power of ten of the first digit after rounding to ``digits``: for 0.0996, -2 with three and -1 with two."""
-    return int(f"{value:.{digits - 1}e}".partition("e")[2])
+    if math.isfinite(value) and math.isfinite(error) and error > 0.0:
+        text = f"{ufloat(value, error):{sign}.2u}".replace("+/-", " ± ").replace("e-0", "e-").replace("e+0", "e")
+    else:
+        text = f"{value:{sign}.6g}"
+    return f"{text} {unit}" if unit else text

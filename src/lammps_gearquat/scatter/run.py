@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from gearquat_analysis.tables import aligned, error_cells, write_rows
+from gearquat_analysis.tables import aligned, with_error, write_rows
 
 from .. import figures
 from ..trials.script import DeckError
@@ -58,11 +58,11 @@ def conclude(folder, name, facts, plan, found):
     every = {"plan": plain, "quantities": {row.name: asdict(row) for row in rows}, "flights": counts}
     (folder.path / "results.json").write_text(json.dumps(every, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     figures.draw_deflection(folder.path / "deflection.png", name, found, plan, facts.style)
-    cells = [[row.name, *error_cells(row.value, row.error), row.unit, row.about] for row in rows]
+    cells = [[row.name, with_error(row.value, row.error), row.unit, row.about] for row in rows]
     changes = found["error_energy"][found["fate"] == "parted"]
     lines = [
         f"{name}: {len(found['fate'])} flights, of {found['steps'].mean():.0f} steps each",
-        aligned(["quantity", "value", "error", "unit", ""], cells),
+        aligned(["quantity", "value ± error", "unit", ""], cells),
         f"Change of the energy in a flight, relative: at most {changes.max():.1e}, median {np.median(changes):.1e}",
     ]
     if counts["parted"] < len(found["fate"]):
