@@ -200,7 +200,7 @@ velocity all create 1.0 4711 loop geom
 pair_style lj/cut 2.5
 pair_coeff * * 1.0 1.0
 fix move all gear/quat molecule
-fix scale all temp/rescale 1 1.0 1.0 0.0 1.0
+fix heat all langevin 1.0 1.0 1.0 4711
 timestep 0.002
 run 10
 write_restart restart.large
@@ -209,7 +209,7 @@ read_restart restart.large
 pair_style lj/cut 2.5
 pair_coeff * * 1.0 1.0
 fix move all gear/quat molecule
-fix scale all temp/rescale 1 1.0 1.0 0.0 1.0
+fix heat all langevin 1.0 1.0 1.0 4711
 run 10
 EOF
   check "large body on two ranks" "$folder" '^Total wall time' "${twice[@]}" "${leaks[@]}" "$tree/lmp" -in in.large -log none

@@ -10,7 +10,7 @@ from .decks import ROOT
 
 INCLUDED = (ROOT / "src" / "GEARQUAT", ROOT / "tests" / "unit")
 #: the sources of the kernel beside its headers
-_SOURCES = ("coefficients", "remembered_loads", "shapes", "startup", "turn")
+_SOURCES = ("chain", "coefficients", "integrator", "remembered_loads", "shapes", "startup", "turn")
 KERNEL = tuple(ROOT / "src" / "GEARQUAT" / f"gear_quat_{name}.cpp" for name in _SOURCES)
 
 

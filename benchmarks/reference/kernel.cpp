@@ -1,6 +1,6 @@
 /* The coefficients of formulation momentum, from the kernel of the fix, for stability.py. */
 
-#include "gear_quat_coefficients.h"
+#include "gear_quat_history.h"
 
 #include <algorithm>
 

@@ -14,8 +14,6 @@
 #include "fix_gear_quat.h"
 
 #include "gear_quat_ranks.h"
-#include "gear_quat_report.h"
-#include "gear_quat_start.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -60,7 +58,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   thermo_virial = 1;
   dof_flag = 1;
   create_attribute = 1;
-  restart_global = restart_peratom = restart_file = 1;
+  restart_global = restart_peratom = 1;
 
   ecouple_flag = args.thermostat.damp > 0.0 || args.pressure.any();
   constexpr int CHANGES[] = {BOX_CHANGE_X,  BOX_CHANGE_Y,  BOX_CHANGE_Z,
@@ -133,7 +131,6 @@ void FixGearQuat::init()
   if (is_minimized()) {
     driven_box.rest();
     minimization.init();
-    sites.expect_forces(true);
     return;
   }
   driven_box.init();
@@ -149,7 +146,6 @@ void FixGearQuat::init()
   }
   step.init();
   step.velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
-  sites.expect_forces(makes_forces(lmp, this) || other_fixes.any_taken());
 }
 
 /// In a minimization, LAMMPS continues from the end of the last line search.
@@ -173,7 +169,6 @@ void FixGearQuat::setup_pre_neighbor()
   update_bodies();
   driven_box.follow_images();
   const bool defined = step.phase == Phase::DEFINED;
-  if (!defined && !is_minimized()) step.take_velocities(update->ntimestep, false);
   const bool takes_over = args.infile.empty() && stated.empty() && (args.reinit || defined);
   if (takes_over && sites.any_changes()) {
     sites.take_out_flow();
@@ -204,7 +199,6 @@ void FixGearQuat::setup(int vflag)
   show_bodies();
   if (first) report_scene(lmp, this, args, fleet, bodies, ownership, sites);
   atoms_are_free = false;
-  if (!args.mol.empty()) loose_atoms = ownership.loose_atoms(groupbit);
 }
 
 void FixGearQuat::count_rows()
@@ -247,7 +241,7 @@ void FixGearQuat::update_bodies()
 void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
   const auto starters = step.start(f, torque);
-  if (!starters.empty()) Start(lmp, starters, step.length()).run();
+  if (!starters.empty()) start_together(lmp, starters, step.length());
   driven_box.follow();
   sites.advance_densities(update->dt);
   step.begin(vflag, f);
@@ -277,13 +271,6 @@ void FixGearQuat::post_run()
   }
   step.end_run();
   driven_box.end_run();
-  const bigint more = args.mol.empty() ? 0 : ownership.loose_atoms(groupbit) - loose_atoms;
-  if (more > 0 && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat {0}: other fixes have inserted {1} atoms into its group that are "
-                   "in no body, so this fix does not move them; a fix that inserts molecules of "
-                   "template {2} as bodies needs its keyword rigid {0}",
-                   id, more, args.mol);
 }
 
 /// Virial of the constraint forces, at the pose at which the forces were evaluated.
@@ -531,17 +518,4 @@ void FixGearQuat::resume()
                    "Fix gear/quat: the bodies of this command do not consist of the same atoms as "
                    "in the restart file; they are rebuilt from their atoms");
   create_bodies();
-}
-
-/// All bodies in the format of infile.
-void FixGearQuat::write_restart_file(const char *name)
-{
-  if (step.phase == Phase::DEFINED) return;    // the user may still change the atoms
-  auto lines = outputs.lines();
-  write_given_bodies(
-      lmp, fmt::format("{}.{}.gear_quat", name, id),
-      fmt::format("fix {} gear/quat: mass, center of mass, inertia tensor and momenta of {} bodies "
-                  "on timestep {}",
-                  id, bodies.number(), update->ntimestep),
-      lines);
 }

@@ -107,7 +107,6 @@ class FixGearQuat : public Fix {
   void unpack_restart(int, int nth) override { place = nth; }
   int size_restart(int i) override { return HEAD + ownership.packed_size(i); }
   int maxsize_restart() override { return HEAD + ownership.max_exchange(); }
-  void write_restart_file(const char *) override;
   void *extract(const char *name, int &dim) override { return outputs.extract(name, dim); }
 
  private:
@@ -131,7 +130,6 @@ class FixGearQuat : public Fix {
   int place = 0;                    ///< number of other fixes whose data of an atom precede in it
   static constexpr int HEAD = 2;    ///< numbers of an atom before its data: their count, and its ID
 
-  bigint loose_atoms = 0;         ///< of the group, when a run began; with keyword mol
   int told_of_groups = 0;         ///< their bits: a warning about parts of bodies was given
   bool atoms_are_free = false;    // their velocities are not yet those of bodies
   static constexpr int PROJECTED = -1;

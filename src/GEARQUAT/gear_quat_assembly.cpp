@@ -6,6 +6,7 @@
 #include "gear_quat_assembly.h"
 
 #include "gear_quat_box.h"
+#include "gear_quat_exact_sum.h"
 #include "gear_quat_extended.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_shapes.h"
@@ -32,389 +33,9 @@ static constexpr double ROUNDING = 1.0e-14;
 
 static constexpr double MANY = 524288.0;
 
-/* ----------------------------------------------------------------------
-   passes over the sites
-------------------------------------------------------------------------- */
-
-static void merge_sums(ExactSum *sums, const ExactSum *others, int n)
-{
-  for (int k = 0; k < n; ++k) sums[k].add(others[k]);
-}
-
-void Assembly::Sizes::merge(const Sizes &other)
-{
-  natoms += other.natoms;
-  if (other.first < first) {
-    first = other.first;
-    std::copy_n(other.first_x, 3, first_x);
-  }
-  mass = std::max(mass, other.mass);
-  speed = std::max(speed, other.speed);
-  own_inertia = std::max(own_inertia, other.own_inertia);
-  own_momentum = std::max(own_momentum, other.own_momentum);
-  finite = finite && other.finite;
-}
-
-void Assembly::Extremes::merge(const Extremes &other)
-{
-  for (int k = 0; k < 3; ++k) {
-    lo[k] = std::min(lo[k], other.lo[k]);
-    hi[k] = std::max(hi[k], other.hi[k]);
-  }
-  mass.add(other.mass);
-}
-
-void Assembly::Moments::merge(const Moments &other)
-{
-  if (other.distance2 < distance2 || (other.distance2 == distance2 && other.owner < owner)) {
-    distance2 = other.distance2;
-    owner = other.owner;
-    rank = other.rank;
-    local = other.local;
-    std::copy_n(other.x, 3, x);
-  }
-  merge_sums(center, other.center, 3);
-  merge_sums(momentum, other.momentum, 3);
-}
-
-void Assembly::Momenta::merge(const Momenta &other)
-{
-  extent2 = std::max(extent2, other.extent2);
-  from_center2 = std::min(from_center2, other.from_center2);
-  merge_sums(inertia_space, other.inertia_space, 6);
-  merge_sums(angular_momentum_space, other.angular_momentum_space, 3);
-}
-
-void Assembly::Sides::merge(const Sides &other)
-{
-  for (int k = 0; k < 3; ++k) {
-    if (other.mass[k] < mass[k] || (other.mass[k] == mass[k] && other.tag[k] >= tag[k])) continue;
-    mass[k] = other.mass[k];
-    tag[k] = other.tag[k];
-    side[k] = other.side[k];
-  }
-}
-
-double Assembly::mass_of(int i) const
-{
-  return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
-}
-
-void Assembly::unwrapped(int part, int i, double *x) const
-{
-  const double *first = sizes[part].first_x;
-  domain->unmap(atom->x[i], atom->image[i], x);
-  undo_image_flag_overflow(domain, first, x);
-}
-
-/// The vector from the center of mass to a site; zero if the two coincide up to rounding.
-void Assembly::find_arm(const double *x, const double *center, double *arm) const
-{
-  for (int k = 0; k < 3; ++k) arm[k] = x[k] - center[k];
-  const double size = domain->xprd + domain->yprd + domain->zprd + length(x);
-  if (length(arm) <= ROUNDING * size) std::fill_n(arm, 3, 0.0);
-}
-
-Assembly::Site Assembly::site_of(int part, int i) const
-{
-  Site site = {mass_of(i), {}, atom->v[i], i, atom->tag[i]};
-  unwrapped(part, i, site.x);
-  return site;
-}
-
-std::array<double, 3> Assembly::middle(int part) const
-{
-  const double *lo = extremes[part].lo, *hi = extremes[part].hi;
-  return {0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), 0.5 * (lo[2] + hi[2])};
-}
-
-/// No site is further away from the middle of the box around the sites.
-double Assembly::radius(int part) const
-{
-  return 0.5 * std::sqrt(distance2(extremes[part].lo, extremes[part].hi));
-}
-
-/// The scales of sums over all sites of a body, from bounds of the terms: no arm is longer than twice
-/// the radius.
-Assembly::Scales Assembly::scales(int part) const
-{
-  const Sizes &size = sizes[part];
-  const double r = extremes.empty() ? 0.0 : radius(part), mass = size.mass;
-  const auto of = [&size](double bound) {
-    return ExactSum::scale_of(bound * std::max(1.0, (double) size.natoms / MANY));
-  };
-  return {of(mass), of(mass * r), of(mass * size.speed), of(mass * 4.0 * r * r + size.own_inertia),
-          of(mass * 8.0 * r * size.speed + size.own_momentum)};
-}
-
-/* ----------------------------------------------------------------------
-   bodies from their sites, pass by pass
-------------------------------------------------------------------------- */
-
-Assembly::Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extended,
-                   const std::vector<tagint> &ids) :
-    Pointers(lmp),
-    given(given), extended(extended), parts(comm, world, ids.data(), (int) ids.size()),
-    made(parts.number(), Made())
-{
-  find_sizes();
-  find_extremes();
-  refuse_faults();
-  find_moments();
-  const std::vector<Momenta> momenta = find_momenta();
-  for (int part = 0; part < parts.number(); ++part) {
-    made[part].body.extent = std::sqrt(momenta[part].extent2);
-    if (made[part].body.from_file) check_place(part, momenta[part]);
-    find_axes(part, momenta[part]);
-  }
-  orient_axes();
-  for (int part = 0; part < parts.number(); ++part) find_rotation(part, momenta[part]);
-  refuse_faults();
-  refuse_missing();
-}
-
-void Assembly::find_sizes()
-{
-  const Sizes none = {0, MAXTAGINT, {}, 0.0, 0.0, 0.0, 0.0, 1};
-  sizes = over_sites(none, [this](Sizes &all, int part) {
-    Body &body = made[part].body;
-    body.id = parts.key(part);
-    body.from_file = given.count(body.id) > 0;
-    for (const int i : parts.atoms(part)) {
-      const double mass = mass_of(i), *v = atom->v[i];
-      double x[3], inertia[9] = {}, momentum[3] = {};
-      domain->unmap(atom->x[i], atom->image[i], x);
-      if (extended) extended->own_momenta(i, mass, inertia, momentum);
-      ++all.natoms;
-      if (atom->tag[i] < all.first) {
-        all.first = atom->tag[i];
-        std::copy_n(x, 3, all.first_x);
-      }
-      all.mass = std::max(all.mass, std::fabs(mass));
-      for (int k = 0; k < 3; ++k) {
-        all.speed = std::max(all.speed, std::fabs(v[k]));
-        all.own_momentum = std::max(all.own_momentum, std::fabs(momentum[k]));
-      }
-      for (const double one : inertia) all.own_inertia = std::max(all.own_inertia, std::fabs(one));
-      double sum = mass + x[0] + x[1] + x[2];
-      if (!body.from_file)
-        for (int k = 0; k < 3; ++k) sum += v[k] + momentum[k] + inertia[4 * k];
-      if (!std::isfinite(sum)) all.finite = 0;
-    }
-  });
-  for (int part = 0; part < parts.number(); ++part)
-    if (!sizes[part].finite) faulty[NOT_FINITE] = parts.key(part);
-}
-
-void Assembly::find_extremes()
-{
-  const Extremes none = {{NONE, NONE, NONE}, {-NONE, -NONE, -NONE}, ExactSum()};
-  extremes = over_sites(none, [this](Extremes &all, int part) {
-    const double unit = scales(part).mass;
-    visit(part, [&](const Site &site) {
-      for (int k = 0; k < 3; ++k) {
-        all.lo[k] = std::min(all.lo[k], site.x[k]);
-        all.hi[k] = std::max(all.hi[k], site.x[k]);
-      }
-      all.mass.add(site.mass, unit);
-    });
-  });
-  for (int part = 0; part < parts.number(); ++part) {
-    Body &body = made[part].body;
-    body.natoms = (tagint) sizes[part].natoms;
-    body.rigid.mass = extremes[part].mass.value();
-    if (!body.from_file && !(body.rigid.mass > 0.0)) faulty[MASSLESS] = body.id;
-  }
-}
-
-/// The owner is the site nearest to the middle of the body, which needs the fewest ghosts.
-void Assembly::find_moments()
-{
-  const Moments none = {NONE, MAXTAGINT, 0, 0, {}, {}, {}};
-  moments = over_sites(none, [&](Moments &all, int part) {
-    const Scales scale = scales(part);
-    const auto center = middle(part);
-    visit(part, [&](const Site &site) {
-      const double d2 = distance2(site.x, center.data());
-      if (d2 < all.distance2 || (d2 == all.distance2 && site.tag < all.owner)) {
-        all.distance2 = d2;
-        all.owner = site.tag;
-        all.rank = comm->me;
-        all.local = site.local;
-        std::copy_n(site.x, 3, all.x);
-      }
-      for (int k = 0; k < 3; ++k) {
-        all.center[k].add(site.mass * (site.x[k] - center[k]), scale.center);
-        all.momentum[k].add(site.mass * site.v[k], scale.momentum);
-      }
-    });
-  });
-  for (int part = 0; part < parts.number(); ++part) {
-    Made &one = made[part];
-    const auto from = middle(part);
-    const double mass = one.body.rigid.mass;
-    one.owner = moments[part].owner;
-    one.owner_rank = moments[part].rank;
-    one.local = moments[part].local;
-    for (int k = 0; k < 3; ++k) {
-      one.state.center[k] = from[k] + moments[part].center[k].value() / mass;
-      one.state.velocity[k] = moments[part].momentum[k].value() / mass;
-    }
-    if (sizes[part].natoms == 1)    // without rounding
-      std::copy_n(atom->v[parts.atoms(part).first[0]], 3, one.state.velocity);
-    check_parts(part);
-    if (one.body.from_file) take_given(given.at(one.body.id), part);
-  }
-}
-
-std::vector<Assembly::Momenta> Assembly::find_momenta()
-{
-  const Momenta none = {0.0, NONE, {}, {}};
-  return over_sites(none, [this](Momenta &all, int part) {
-    const Scales scale = scales(part);
-    const BodyState &state = made[part].state;
-    const bool counts = !made[part].body.from_file;
-    visit(part, [&](const Site &site) {
-      double arm[3], speed[3], spin[3], own_inertia[9] = {}, own_momentum[3] = {};
-      find_arm(site.x, state.center, arm);
-      for (int k = 0; k < 3; ++k) speed[k] = site.v[k] - state.velocity[k];
-      cross3(arm, speed, spin);
-      const double r2 = dot3(arm, arm);
-      all.extent2 = std::max(all.extent2, distance2(site.x, moments[part].x));
-      all.from_center2 = std::min(all.from_center2, r2);
-      if (!counts) return;
-      if (extended) extended->own_momenta(site.local, site.mass, own_inertia, own_momentum);
-      for (int k = 0; k < 3; ++k)
-        all.angular_momentum_space[k].add(own_momentum[k] + site.mass * spin[k],
-                                          scale.angular_momentum);
-      for (int m = 0; m < 6; ++m) {
-        const int k = ROW[m], l = COLUMN[m];
-        all.inertia_space[m].add(own_inertia[3 * k + l] +
-                                     site.mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]),
-                                 scale.inertia);
-      }
-    });
-  });
-}
-
-/// Only the owner's rank counts a body of the file.
-void Assembly::take_given(const GivenBody &given_body, int part)
-{
-  Made &one = made[part];
-  if (one.owner_rank == comm->me) found.push_back(one.body.id);
-  one.body.rigid.mass = given_body.mass;
-  if (!(given_body.mass > 0.0)) faulty[MASSLESS] = one.body.id;
-  for (int k = 0; k < 3; ++k) {
-    one.state.center[k] = given_body.center[k];
-    one.state.velocity[k] = given_body.velocity[k];
-  }
-  const imageint image = ((imageint) (given_body.image[0] + IMGMAX) & IMGMASK) |
-      (((imageint) (given_body.image[1] + IMGMAX) & IMGMASK) << IMGBITS) |
-      (((imageint) (given_body.image[2] + IMGMAX) & IMGMASK) << IMG2BITS);
-  domain->unmap(one.state.center, image);
-}
-
 static constexpr double ROUNDED = 1.0e-3;    // of a moment written with few digits
 
 static constexpr double ON_AXIS = 1.0e-6;    // of the body's size: on neither side
-
-/* ----------------------------------------------------------------------
-   principal axes
-------------------------------------------------------------------------- */
-
-/// Principal moments, and axes without directions.
-void Assembly::find_axes(int part, const Momenta &momenta)
-{
-  double tensor[9];
-  for (int m = 0; m < 6; ++m)
-    tensor[3 * ROW[m] + COLUMN[m]] = tensor[3 * COLUMN[m] + ROW[m]] =
-        momenta.inertia_space[m].value();
-  Made &one = made[part];
-  if (one.body.from_file) {
-    const double *i = given.at(one.body.id).inertia;
-    const double given_tensor[9] = {i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]};
-    std::copy_n(given_tensor, 9, tensor);
-  }
-  // in two dimensions bodies turn about the z axis, which does not change at all
-  if (domain->dimension == 2) tensor[2] = tensor[5] = tensor[6] = tensor[7] = 0.0;
-  double *moments = one.body.rigid.inertia;
-  principal_axes(tensor, moments, one.axes);
-  check_moments(one);
-  drop_vanishing_moments(moments);
-  if (domain->dimension == 3) sort_axes(moments, one.axes);
-}
-
-/// Orientation and angular velocity.
-void Assembly::find_rotation(int part, const Momenta &momenta)
-{
-  Made &one = made[part];
-  const double *moments = one.body.rigid.inertia;
-  double momentum_space[3], momentum_body[3];
-  for (int k = 0; k < 3; ++k)
-    momentum_space[k] = one.body.from_file ? given.at(one.body.id).angular_momentum_space[k]
-                                           : momenta.angular_momentum_space[k].value();
-  quaternion_from_matrix(one.axes, one.state.q);
-  to_body(one.axes, momentum_space, momentum_body);
-  for (int k = 0; k < 3; ++k)
-    one.state.omega_body[k] = moments[k] > 0.0 ? momentum_body[k] / moments[k] : 0.0;
-  if (domain->dimension == 2)
-    one.state.velocity[2] = one.state.omega_body[0] = one.state.omega_body[1] = 0.0;
-  for (int k = 0; k < 3; ++k)
-    if (!std::isfinite(one.state.omega_body[k]) || !std::isfinite(one.state.velocity[k]))
-      faulty[NOT_FINITE] = one.body.id;
-}
-
-/* ----------------------------------------------------------------------
-   directions of the axes
-------------------------------------------------------------------------- */
-
-/// Directs the axes by the body itself, not by its orientation at the start: the first and the
-/// third axis point to the side of the heaviest site that is not in the plane perpendicular to the
-/// axis; among equally heavy sites the first one counts.
-void Assembly::orient_axes()
-{
-  if (domain->dimension != 3) return;
-  const auto along = [this](int part, const Site &site, double *components) {
-    double arm[3];
-    for (int k = 0; k < 3; ++k) arm[k] = site.x[k] - made[part].state.center[k];
-    to_body(made[part].axes, arm, components);
-  };
-  const Sides none = {{-1.0, -1.0, -1.0}, {MAXTAGINT, MAXTAGINT, MAXTAGINT}, {}};
-  const std::vector<Sides> sides = over_sites(none, [&](Sides &all, int part) {
-    visit(part, [&](const Site &site) {
-      Sides one = none;
-      along(part, site, one.side);
-      for (int k = 0; k < 3; ++k) {
-        if (std::fabs(one.side[k]) < ON_AXIS * radius(part)) continue;
-        one.mass[k] = site.mass;
-        one.tag[k] = site.tag;
-      }
-      all.merge(one);
-    });
-  });
-  for (int part = 0; part < parts.number(); ++part) direct(made[part].axes, sides[part]);
-}
-
-/// Sets two directions; the third axis follows from them.
-void Assembly::direct(double *axes, const Sides &sides)
-{
-  // false if all sites are in the plane perpendicular to the axis
-
-  const auto turn = [&](int k) {
-    if (sides.tag[k] == MAXTAGINT) return false;
-    if (sides.side[k] < 0.0)
-      for (int i = 3 * k; i < 3 * k + 3; ++i) axes[i] = -axes[i];
-    return true;
-  };
-  const bool first = turn(0), third = turn(2);
-  const int last = first == third ? 1 : first ? 2 : 0;
-  if (last != 1) turn(1);
-  cross3(axes + 3 * ((last + 1) % 3), axes + 3 * ((last + 2) % 3), axes + 3 * last);
-}
-
-/* ----------------------------------------------------------------------
-   invalid bodies
-------------------------------------------------------------------------- */
 
 /// Texts in the order of Assembly's faults; the first fault found is reported.
 static const char *const FAULT_TEXTS[] = {
@@ -427,66 +48,515 @@ static const char *const FAULT_TEXTS[] = {
     "Fix gear/quat, infile or template: the center of mass of body {} is far away from all its "
     "atoms; are its position and its image flags right?"};
 
-/// Two plates may be one body, but two halves of a molecule at opposite faces of the box may not: then
-/// even the site nearest to the middle is far from it.
-void Assembly::check_parts(int part)
+static void merge_sums(ExactSum *sums, const ExactSum *others, int n)
 {
-  constexpr double FAR = 1.0 / 3.0;    // of a period
-  const auto center = middle(part);
-  double way[3], periods[3];
-  for (int k = 0; k < 3; ++k) way[k] = moments[part].x[k] - center[k];
-  to_periods(domain, way, periods);
-  for (int k = 0; k < domain->dimension; ++k)
-    if (domain->periodicity[k] && std::fabs(periods[k]) > FAR) faulty[TORN] = parts.key(part);
+  for (int k = 0; k < n; ++k) sums[k].add(others[k]);
 }
 
-/// A given center may lie outside of the body, but not by half a box, since image flags belong to
-/// it.
-void Assembly::check_place(int part, const Momenta &momenta)
-{
-  const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
-  const double far = made[part].body.extent + 0.5 * longest;
-  if (!(momenta.from_center2 <= far * far)) faulty[APART] = made[part].body.id;
-}
+namespace {
 
-/// Sums over masses satisfy all of this automatically, up to rounding.
-void Assembly::check_moments(const Made &one)
-{
-  const double *moments = one.body.rigid.inertia;
-  const double largest = std::max({moments[0], moments[1], moments[2]});
-  const double smallest = std::min({moments[0], moments[1], moments[2]});
-  const double sum = moments[0] + moments[1] + moments[2];
-  if (!std::isfinite(sum))
-    faulty[NOT_FINITE] = one.body.id;
-  else if (smallest < -LINEAR_FRACTION * largest)
-    faulty[NEGATIVE] = one.body.id;
-  else if (one.body.from_file && domain->dimension == 3 &&
-           (1.0 - ROUNDED) * largest > sum - largest)
-    faulty[UNBALANCED] = one.body.id;
-}
+class Assembly : protected Pointers {
+ public:
+  Assembly(LAMMPS *lmp, const GivenBodies &given, const Extended *extended,
+           const std::vector<tagint> &ids) :
+      Pointers(lmp),
+      given(given), extended(extended), parts(comm, world, ids.data(), (int) ids.size()),
+      made(parts.number(), AssembledBody())
+  {
+    find_sizes();
+    find_extremes();
+    refuse_faults();
+    find_moments();
+    const std::vector<Momenta> momenta = find_momenta();
+    for (int part = 0; part < parts.number(); ++part) {
+      made[part].body.extent = std::sqrt(momenta[part].extent2);
+      if (made[part].body.from_file) check_place(part, momenta[part]);
+      find_axes(part, momenta[part]);
+    }
+    orient_axes();
+    for (int part = 0; part < parts.number(); ++part) find_rotation(part, momenta[part]);
+    refuse_faults();
+    refuse_missing();
+  }
 
-void Assembly::refuse_faults()
-{
-  const auto any = over_ranks(MPI_MAX, faulty, world);
-  for (int fault = 0; fault < FAULTS; ++fault)
-    if (any[fault] > 0) error->all(FLERR, FAULT_TEXTS[fault], any[fault]);
-  if (any[TORN] > 0 && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: parts of body {} are more than half of a periodic box apart; if "
-                   "they belong together, the image flags of its atoms are wrong: unwrap the atoms "
-                   "in the data file, or use set image before this fix",
-                   any[TORN]);
-}
+  const std::vector<AssembledBody> &bodies() const { return made; }
+  void for_sites(const OfSite &act) const
+  {
+    for (int part = 0; part < parts.number(); ++part)
+      for (const int i : parts.atoms(part)) {
+        double x[3], arm[3], arm_body[3];
+        unwrapped(part, i, x);
+        find_arm(x, made[part].state.center, arm);
+        to_body(made[part].axes, arm, arm_body);
+        act(made[part], i, arm_body);
+      }
+  }
 
-void Assembly::refuse_missing()
-{
-  const auto all = gather_sorted(found, world);
-  for (const auto &stated : given)
-    if (!std::binary_search(all.begin(), all.end(), stated.first))
-      error->all(FLERR, "Fix gear/quat infile: no atom belongs to body {}", stated.first);
-}
+ private:
+  const GivenBodies &given;
+  const Extended *extended;
+  Parts parts;
+  std::vector<AssembledBody> made;
 
-bool Assembly::Made::moves_apart(const double *v, const double *arm_body) const
+  enum { MASSLESS, NOT_FINITE, NEGATIVE, UNBALANCED, APART, FAULTS, TORN = FAULTS, FINDINGS };
+  tagint faulty[FINDINGS] = {};    ///< a body with each fault on this rank, 0 for none
+  std::vector<tagint> found;       ///< given bodies whose owner atoms are here
+
+  struct Site {
+    double mass;
+    double x[3];    ///< unwrapped
+    const double *v;
+    int local;
+    tagint tag;
+  };
+
+  // Results of one pass over the sites, for each part; merged, for the whole body.  A pass needs
+  // the results of earlier passes.
+
+  struct Sizes {    ///< scales of the sums
+    bigint natoms;
+    tagint first;         ///< smallest atom ID
+    double first_x[3];    ///< of this atom, unwrapped: where image flags are relative to
+    double mass, speed, own_inertia, own_momentum;    ///< largest component of a site
+    int finite;
+    void merge(const Sizes &other)
+    {
+      natoms += other.natoms;
+      if (other.first < first) {
+        first = other.first;
+        std::copy_n(other.first_x, 3, first_x);
+      }
+      mass = std::max(mass, other.mass);
+      speed = std::max(speed, other.speed);
+      own_inertia = std::max(own_inertia, other.own_inertia);
+      own_momentum = std::max(own_momentum, other.own_momentum);
+      finite = finite && other.finite;
+    }
+  };
+  struct Extremes {
+    double lo[3], hi[3];    ///< box around the sites
+    ExactSum mass;
+    void merge(const Extremes &other)
+    {
+      for (int k = 0; k < 3; ++k) {
+        lo[k] = std::min(lo[k], other.lo[k]);
+        hi[k] = std::max(hi[k], other.hi[k]);
+      }
+      mass.add(other.mass);
+    }
+  };
+  struct Moments {    ///< about the middle of the box around the sites
+    double distance2;
+    tagint owner;    ///< atom ID of the site nearest to the middle
+    int rank, local;
+    double x[3];    ///< of this site
+    ExactSum center[3], momentum[3];
+    void merge(const Moments &other)
+    {
+      if (other.distance2 < distance2 || (other.distance2 == distance2 && other.owner < owner)) {
+        distance2 = other.distance2;
+        owner = other.owner;
+        rank = other.rank;
+        local = other.local;
+        std::copy_n(other.x, 3, x);
+      }
+      merge_sums(center, other.center, 3);
+      merge_sums(momentum, other.momentum, 3);
+    }
+  };
+  struct Momenta {          ///< about the center of mass
+    double extent2;         ///< largest distance of a site from the owner atom, squared
+    double from_center2;    ///< smallest one from the center of mass
+    ExactSum inertia_space[6], angular_momentum_space[3];    ///< xx, xy, xz, yy, yz, zz
+    void merge(const Momenta &other)
+    {
+      extent2 = std::max(extent2, other.extent2);
+      from_center2 = std::min(from_center2, other.from_center2);
+      merge_sums(inertia_space, other.inertia_space, 6);
+      merge_sums(angular_momentum_space, other.angular_momentum_space, 3);
+    }
+  };
+  struct Sides {    ///< of the heaviest site outside of the plane across each axis
+    double mass[3];
+    tagint tag[3];     ///< MAXTAGINT: there is no such site
+    double side[3];    ///< distance from the plane
+    void merge(const Sides &other)
+    {
+      for (int k = 0; k < 3; ++k) {
+        if (other.mass[k] < mass[k] || (other.mass[k] == mass[k] && other.tag[k] >= tag[k]))
+          continue;
+        mass[k] = other.mass[k];
+        tag[k] = other.tag[k];
+        side[k] = other.side[k];
+      }
+    }
+  };
+  std::vector<Sizes> sizes;
+  std::vector<Extremes> extremes;
+  std::vector<Moments> moments;
+
+  /// Rows and columns of the six components of a symmetric tensor.
+  static constexpr int ROW[6] = {0, 0, 0, 1, 1, 2}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
+
+  double mass_of(int i) const { return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]]; }
+
+  void unwrapped(int part, int i, double *x) const
+  {
+    const double *first = sizes[part].first_x;
+    domain->unmap(atom->x[i], atom->image[i], x);
+    undo_image_flag_overflow(domain, first, x);
+  }
+
+  /// act: of every site of a part.
+  template <class Act> void visit(int part, Act act) const
+  {
+    for (const int i : parts.atoms(part)) act(site_of(part, i));
+  }
+  struct Scales {
+    double mass, center, momentum, inertia, angular_momentum;
+  };
+  /// add: takes the sites of a part into its item.  Returns the items of whole bodies.
+  template <class Item, class Add> std::vector<Item> over_sites(const Item &none, Add add) const
+  {
+    std::vector<Item> items(parts.number(), none);
+    for (int part = 0; part < parts.number(); ++part) add(items[part], part);
+    parts.merge(items);
+    return items;
+  }
+
+  /// The vector from the center of mass to a site; zero if the two coincide up to rounding.
+  void find_arm(const double *x, const double *center, double *arm) const
+  {
+    for (int k = 0; k < 3; ++k) arm[k] = x[k] - center[k];
+    const double size = domain->xprd + domain->yprd + domain->zprd + length(x);
+    if (length(arm) <= ROUNDING * size) std::fill_n(arm, 3, 0.0);
+  }
+
+  Site site_of(int part, int i) const
+  {
+    Site site = {mass_of(i), {}, atom->v[i], i, atom->tag[i]};
+    unwrapped(part, i, site.x);
+    return site;
+  }
+
+  std::array<double, 3> middle(int part) const
+  {
+    const double *lo = extremes[part].lo, *hi = extremes[part].hi;
+    return {0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), 0.5 * (lo[2] + hi[2])};
+  }
+
+  /// No site is further away from the middle of the box around the sites.
+  double radius(int part) const
+  {
+    return 0.5 * std::sqrt(distance2(extremes[part].lo, extremes[part].hi));
+  }
+
+  /// The scales of sums over all sites of a body, from bounds of the terms: no arm is longer than twice
+  /// the radius.
+  Scales scales(int part) const
+  {
+    const Sizes &size = sizes[part];
+    const double r = extremes.empty() ? 0.0 : radius(part), mass = size.mass;
+    const auto of = [&size](double bound) {
+      return ExactSum::scale_of(bound * std::max(1.0, (double) size.natoms / MANY));
+    };
+    return {of(mass), of(mass * r), of(mass * size.speed),
+            of(mass * 4.0 * r * r + size.own_inertia),
+            of(mass * 8.0 * r * size.speed + size.own_momentum)};
+  }
+
+  void find_sizes()
+  {
+    const Sizes none = {0, MAXTAGINT, {}, 0.0, 0.0, 0.0, 0.0, 1};
+    sizes = over_sites(none, [this](Sizes &all, int part) {
+      Body &body = made[part].body;
+      body.id = parts.key(part);
+      body.from_file = given.count(body.id) > 0;
+      for (const int i : parts.atoms(part)) {
+        const double mass = mass_of(i), *v = atom->v[i];
+        double x[3], inertia[9] = {}, momentum[3] = {};
+        domain->unmap(atom->x[i], atom->image[i], x);
+        if (extended) extended->own_momenta(i, mass, inertia, momentum);
+        ++all.natoms;
+        if (atom->tag[i] < all.first) {
+          all.first = atom->tag[i];
+          std::copy_n(x, 3, all.first_x);
+        }
+        all.mass = std::max(all.mass, std::fabs(mass));
+        for (int k = 0; k < 3; ++k) {
+          all.speed = std::max(all.speed, std::fabs(v[k]));
+          all.own_momentum = std::max(all.own_momentum, std::fabs(momentum[k]));
+        }
+        for (const double one : inertia)
+          all.own_inertia = std::max(all.own_inertia, std::fabs(one));
+        double sum = mass + x[0] + x[1] + x[2];
+        if (!body.from_file)
+          for (int k = 0; k < 3; ++k) sum += v[k] + momentum[k] + inertia[4 * k];
+        if (!std::isfinite(sum)) all.finite = 0;
+      }
+    });
+    for (int part = 0; part < parts.number(); ++part)
+      if (!sizes[part].finite) faulty[NOT_FINITE] = parts.key(part);
+  }
+
+  void find_extremes()
+  {
+    const Extremes none = {{NONE, NONE, NONE}, {-NONE, -NONE, -NONE}, ExactSum()};
+    extremes = over_sites(none, [this](Extremes &all, int part) {
+      const double unit = scales(part).mass;
+      visit(part, [&](const Site &site) {
+        for (int k = 0; k < 3; ++k) {
+          all.lo[k] = std::min(all.lo[k], site.x[k]);
+          all.hi[k] = std::max(all.hi[k], site.x[k]);
+        }
+        all.mass.add(site.mass, unit);
+      });
+    });
+    for (int part = 0; part < parts.number(); ++part) {
+      Body &body = made[part].body;
+      body.natoms = (tagint) sizes[part].natoms;
+      body.rigid.mass = extremes[part].mass.value();
+      if (!body.from_file && !(body.rigid.mass > 0.0)) faulty[MASSLESS] = body.id;
+    }
+  }
+
+  /// The owner is the site nearest to the middle of the body, which needs the fewest ghosts.
+  void find_moments()
+  {
+    const Moments none = {NONE, MAXTAGINT, 0, 0, {}, {}, {}};
+    moments = over_sites(none, [&](Moments &all, int part) {
+      const Scales scale = scales(part);
+      const auto center = middle(part);
+      visit(part, [&](const Site &site) {
+        const double d2 = distance2(site.x, center.data());
+        if (d2 < all.distance2 || (d2 == all.distance2 && site.tag < all.owner)) {
+          all.distance2 = d2;
+          all.owner = site.tag;
+          all.rank = comm->me;
+          all.local = site.local;
+          std::copy_n(site.x, 3, all.x);
+        }
+        for (int k = 0; k < 3; ++k) {
+          all.center[k].add(site.mass * (site.x[k] - center[k]), scale.center);
+          all.momentum[k].add(site.mass * site.v[k], scale.momentum);
+        }
+      });
+    });
+    for (int part = 0; part < parts.number(); ++part) {
+      AssembledBody &one = made[part];
+      const auto from = middle(part);
+      const double mass = one.body.rigid.mass;
+      one.owner = moments[part].owner;
+      one.owner_rank = moments[part].rank;
+      one.local = moments[part].local;
+      for (int k = 0; k < 3; ++k) {
+        one.state.center[k] = from[k] + moments[part].center[k].value() / mass;
+        one.state.velocity[k] = moments[part].momentum[k].value() / mass;
+      }
+      if (sizes[part].natoms == 1)    // without rounding
+        std::copy_n(atom->v[parts.atoms(part).first[0]], 3, one.state.velocity);
+      check_parts(part);
+      if (one.body.from_file) take_given(given.at(one.body.id), part);
+    }
+  }
+
+  std::vector<Momenta> find_momenta()
+  {
+    const Momenta none = {0.0, NONE, {}, {}};
+    return over_sites(none, [this](Momenta &all, int part) {
+      const Scales scale = scales(part);
+      const BodyState &state = made[part].state;
+      const bool counts = !made[part].body.from_file;
+      visit(part, [&](const Site &site) {
+        double arm[3], speed[3], spin[3], own_inertia[9] = {}, own_momentum[3] = {};
+        find_arm(site.x, state.center, arm);
+        for (int k = 0; k < 3; ++k) speed[k] = site.v[k] - state.velocity[k];
+        cross3(arm, speed, spin);
+        const double r2 = dot3(arm, arm);
+        all.extent2 = std::max(all.extent2, distance2(site.x, moments[part].x));
+        all.from_center2 = std::min(all.from_center2, r2);
+        if (!counts) return;
+        if (extended) extended->own_momenta(site.local, site.mass, own_inertia, own_momentum);
+        for (int k = 0; k < 3; ++k)
+          all.angular_momentum_space[k].add(own_momentum[k] + site.mass * spin[k],
+                                            scale.angular_momentum);
+        for (int m = 0; m < 6; ++m) {
+          const int k = ROW[m], l = COLUMN[m];
+          all.inertia_space[m].add(own_inertia[3 * k + l] +
+                                       site.mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]),
+                                   scale.inertia);
+        }
+      });
+    });
+  }
+
+  /// Only the owner's rank counts a body of the file.
+  void take_given(const GivenBody &given_body, int part)
+  {
+    AssembledBody &one = made[part];
+    if (one.owner_rank == comm->me) found.push_back(one.body.id);
+    one.body.rigid.mass = given_body.mass;
+    if (!(given_body.mass > 0.0)) faulty[MASSLESS] = one.body.id;
+    for (int k = 0; k < 3; ++k) {
+      one.state.center[k] = given_body.center[k];
+      one.state.velocity[k] = given_body.velocity[k];
+    }
+    const imageint image = ((imageint) (given_body.image[0] + IMGMAX) & IMGMASK) |
+        (((imageint) (given_body.image[1] + IMGMAX) & IMGMASK) << IMGBITS) |
+        (((imageint) (given_body.image[2] + IMGMAX) & IMGMASK) << IMG2BITS);
+    domain->unmap(one.state.center, image);
+  }
+
+  /// Principal moments, and axes without directions.
+  void find_axes(int part, const Momenta &momenta)
+  {
+    double tensor[9];
+    for (int m = 0; m < 6; ++m)
+      tensor[3 * ROW[m] + COLUMN[m]] = tensor[3 * COLUMN[m] + ROW[m]] =
+          momenta.inertia_space[m].value();
+    AssembledBody &one = made[part];
+    if (one.body.from_file) {
+      const double *i = given.at(one.body.id).inertia;
+      const double given_tensor[9] = {i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]};
+      std::copy_n(given_tensor, 9, tensor);
+    }
+    // in two dimensions bodies turn about the z axis, which does not change at all
+    if (domain->dimension == 2) tensor[2] = tensor[5] = tensor[6] = tensor[7] = 0.0;
+    double *moments = one.body.rigid.inertia;
+    principal_axes(tensor, moments, one.axes);
+    check_moments(one);
+    drop_vanishing_moments(moments);
+    if (domain->dimension == 3) sort_axes(moments, one.axes);
+  }
+
+  /// Orientation and angular velocity.
+  void find_rotation(int part, const Momenta &momenta)
+  {
+    AssembledBody &one = made[part];
+    const double *moments = one.body.rigid.inertia;
+    double momentum_space[3], momentum_body[3];
+    for (int k = 0; k < 3; ++k)
+      momentum_space[k] = one.body.from_file ? given.at(one.body.id).angular_momentum_space[k]
+                                             : momenta.angular_momentum_space[k].value();
+    quaternion_from_matrix(one.axes, one.state.q);
+    to_body(one.axes, momentum_space, momentum_body);
+    for (int k = 0; k < 3; ++k)
+      one.state.omega_body[k] = moments[k] > 0.0 ? momentum_body[k] / moments[k] : 0.0;
+    if (domain->dimension == 2)
+      one.state.velocity[2] = one.state.omega_body[0] = one.state.omega_body[1] = 0.0;
+    for (int k = 0; k < 3; ++k)
+      if (!std::isfinite(one.state.omega_body[k]) || !std::isfinite(one.state.velocity[k]))
+        faulty[NOT_FINITE] = one.body.id;
+  }
+
+  /// Directs the axes by the body itself, not by its orientation at the start: the first and the
+  /// third axis point to the side of the heaviest site that is not in the plane perpendicular to the
+  /// axis; among equally heavy sites the first one counts.
+  void orient_axes()
+  {
+    if (domain->dimension != 3) return;
+    const auto along = [this](int part, const Site &site, double *components) {
+      double arm[3];
+      for (int k = 0; k < 3; ++k) arm[k] = site.x[k] - made[part].state.center[k];
+      to_body(made[part].axes, arm, components);
+    };
+    const Sides none = {{-1.0, -1.0, -1.0}, {MAXTAGINT, MAXTAGINT, MAXTAGINT}, {}};
+    const std::vector<Sides> sides = over_sites(none, [&](Sides &all, int part) {
+      visit(part, [&](const Site &site) {
+        Sides one = none;
+        along(part, site, one.side);
+        for (int k = 0; k < 3; ++k) {
+          if (std::fabs(one.side[k]) < ON_AXIS * radius(part)) continue;
+          one.mass[k] = site.mass;
+          one.tag[k] = site.tag;
+        }
+        all.merge(one);
+      });
+    });
+    for (int part = 0; part < parts.number(); ++part) direct(made[part].axes, sides[part]);
+  }
+
+  /// Sets two directions; the third axis follows from them.
+  void direct(double *axes, const Sides &sides)
+  {
+    // false if all sites are in the plane perpendicular to the axis
+
+    const auto turn = [&](int k) {
+      if (sides.tag[k] == MAXTAGINT) return false;
+      if (sides.side[k] < 0.0)
+        for (int i = 3 * k; i < 3 * k + 3; ++i) axes[i] = -axes[i];
+      return true;
+    };
+    const bool first = turn(0), third = turn(2);
+    const int last = first == third ? 1 : first ? 2 : 0;
+    if (last != 1) turn(1);
+    cross3(axes + 3 * ((last + 1) % 3), axes + 3 * ((last + 2) % 3), axes + 3 * last);
+  }
+
+  /// Two plates may be one body, but two halves of a molecule at opposite faces of the box may not: then
+  /// even the site nearest to the middle is far from it.
+  void check_parts(int part)
+  {
+    constexpr double FAR = 1.0 / 3.0;    // of a period
+    const auto center = middle(part);
+    double way[3], periods[3];
+    for (int k = 0; k < 3; ++k) way[k] = moments[part].x[k] - center[k];
+    to_periods(domain, way, periods);
+    for (int k = 0; k < domain->dimension; ++k)
+      if (domain->periodicity[k] && std::fabs(periods[k]) > FAR) faulty[TORN] = parts.key(part);
+  }
+
+  /// A given center may lie outside of the body, but not by half a box, since image flags belong to
+  /// it.
+  void check_place(int part, const Momenta &momenta)
+  {
+    const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
+    const double far = made[part].body.extent + 0.5 * longest;
+    if (!(momenta.from_center2 <= far * far)) faulty[APART] = made[part].body.id;
+  }
+
+  /// Sums over masses satisfy all of this automatically, up to rounding.
+  void check_moments(const AssembledBody &one)
+  {
+    const double *moments = one.body.rigid.inertia;
+    const double largest = std::max({moments[0], moments[1], moments[2]});
+    const double smallest = std::min({moments[0], moments[1], moments[2]});
+    const double sum = moments[0] + moments[1] + moments[2];
+    if (!std::isfinite(sum))
+      faulty[NOT_FINITE] = one.body.id;
+    else if (smallest < -LINEAR_FRACTION * largest)
+      faulty[NEGATIVE] = one.body.id;
+    else if (one.body.from_file && domain->dimension == 3 &&
+             (1.0 - ROUNDED) * largest > sum - largest)
+      faulty[UNBALANCED] = one.body.id;
+  }
+
+  void refuse_faults()
+  {
+    const auto any = over_ranks(MPI_MAX, faulty, world);
+    for (int fault = 0; fault < FAULTS; ++fault)
+      if (any[fault] > 0) error->all(FLERR, FAULT_TEXTS[fault], any[fault]);
+    if (any[TORN] > 0 && comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix gear/quat: parts of body {} are more than half of a periodic box apart; if "
+          "they belong together, the image flags of its atoms are wrong: unwrap the atoms "
+          "in the data file, or use set image before this fix",
+          any[TORN]);
+  }
+
+  void refuse_missing()
+  {
+    const auto all = gather_sorted(found, world);
+    for (const auto &stated : given)
+      if (!std::binary_search(all.begin(), all.end(), stated.first))
+        error->all(FLERR, "Fix gear/quat infile: no atom belongs to body {}", stated.first);
+  }
+};
+
+}    // namespace
+
+bool AssembledBody::moves_apart(const double *v, const double *arm_body) const
 {
   constexpr double APART = 1.0e-3;    // velocities of a data file have few digits
   double turning_body[3], turning[3], off[3];
@@ -494,4 +564,13 @@ bool Assembly::Made::moves_apart(const double *v, const double *arm_body) const
   to_space(axes, turning_body, turning);
   for (int k = 0; k < 3; ++k) off[k] = v[k] - state.velocity[k] - turning[k];
   return dot3(off, off) > APART * APART * dot3(v, v);
+}
+
+std::vector<AssembledBody> GearQuat::assemble(LAMMPS *lmp, const GivenBodies &given,
+                                              const Extended *extended,
+                                              const std::vector<tagint> &ids, const OfSite &act)
+{
+  const Assembly assembly(lmp, given, extended, ids);
+  assembly.for_sites(act);
+  return assembly.bodies();
 }

@@ -77,7 +77,7 @@ void Barostat::set_scheme(const Scheme &scheme)
   if (!moves()) return;
   if (scheme.remembers() && !times) times.emplace(false);
   cell.set_scheme(scheme);
-  fastest = fastest_oscillation(CellHistory::scheme_of(scheme));
+  fastest = fastest_oscillation(scheme);
 }
 
 /* ----------------------------------------------------------------------

@@ -5,7 +5,7 @@
 
 #include "gear_quat_bath.h"
 
-#include "gear_quat_langevin.h"
+#include "gear_quat_friction.h"
 #include "gear_quat_ranks.h"
 
 #include "comm.h"
@@ -30,11 +30,6 @@ static constexpr double FEWEST_STEPS = 10.0;
 
 static constexpr double STRONGEST = 0.5, SAFE = 0.8;
 
-// a part of the kinetic energy that stays below this fraction of its target for this many damping
-// times will not become warm: a separate chain increases it by several powers of ten in that time
-
-static constexpr double COLD = 0.01, COLD_TIMES = 10.0;
-
 // targets that differ by less than this are equal up to rounding
 
 static constexpr double ROUNDING = 1.0e-12;
@@ -42,10 +37,6 @@ static constexpr double ROUNDING = 1.0e-12;
 // a change of the friction in a step that is rounding
 
 static constexpr double ROUNDING_OF_FRICTION = 1.0e-15;
-
-// a common motion of all bodies with less kinetic energy than this, in kT, is not reported
-
-static constexpr double TOLD_MOTION = 0.01;
 
 static constexpr auto TRANSLATION = Temperature::TRANSLATION, ROTATION = Temperature::ROTATION;
 
@@ -78,7 +69,7 @@ void Bath::set_scheme(const Scheme &scheme)
   of_heat.formulation = Formulation::FIRST;
   of_heat.rows = values_of_heat = isokinetic.acts()
       ? scheme.values()
-      : std::min(CellHistory::scheme_of(scheme).values() - scheme.remembers(), FIRST_MOST);
+      : std::min(scheme.values() - scheme.remembers(), FIRST_MOST);
   coefficients_of_heat = CorrectorCoefficients(of_heat).c;
   box.set_scheme(scheme);
 }
@@ -201,15 +192,12 @@ void Bath::refuse_bodies() const
 
 void Bath::tell_freedoms()
 {
-  std::string now = fmt::format(
-      "thermostat of {:.0f} degrees of freedom of translation{} and {:.0f} of rotation",
-      temperature.freedoms[TRANSLATION], temperature.description(), temperature.freedoms[ROTATION]);
-  const double common = temperature.common_energy();
-  if (common > TOLD_MOTION)
-    now += fmt::format("; the bodies move together with a kinetic energy of {:.3g} kT, which is "
-                       "not part of their temperature: velocity zero linear removes it",
-                       common);
-  temperature.tell_once(told, now);
+  temperature.tell_once(
+      told,
+      fmt::format("thermostat of {:.0f} degrees of freedom of translation{} and {:.0f} of "
+                  "rotation",
+                  temperature.freedoms[TRANSLATION], temperature.description(),
+                  temperature.freedoms[ROTATION]));
 }
 
 const char *Bath::reason_to_start_anew() const
@@ -336,11 +324,10 @@ void Bath::begin_correction(double h)
   note_friction();
 }
 
-void Bath::add(const Integrator &integrator, const Friction &friction, const Block &block,
-               const int *ids)
+void Bath::add(const Integrator &integrator, const Block &block, const int *ids)
 {
   Velocities velocities = {};
-  integrator.find_velocities(block, friction, velocities);
+  integrator.find_velocities(block, velocities);
   if (box.moves()) box.to_space(velocities.linear);
   temperature.add(block.count, ids, velocities);
 }
@@ -437,28 +424,6 @@ void Bath::conclude(double h)
   heat.add(removed);
 }
 
-void Bath::note_step(double h)
-{
-  box.note_step(h);
-  if (thermostats == 0) return;
-  for (const auto part : {TRANSLATION, ROTATION}) {
-    const bool is_cold =
-        temperature.twice[part] < COLD * temperature.freedoms[part] * temperature.line.kt;
-    cold[part] = is_cold ? cold[part] + std::fabs(h) : 0.0;
-    if (warned[part] || cold[part] < COLD_TIMES * words.damp) continue;
-    warned[part] = true;
-    if (comm->me == 0)
-      error->warning(
-          FLERR,
-          "Fix gear/quat temp: until step {} the {} kinetic energy of the bodies was below {:g} "
-          "% of its target for {:g} damping times; a thermostat only scales it, so bodies that "
-          "hardly {} stay cold for a long time; velocity create gives them velocities between "
-          "runs",
-          update->ntimestep, part == ROTATION ? "rotational" : "translational", 100.0 * COLD,
-          COLD_TIMES, part == ROTATION ? "rotate" : "move");
-  }
-}
-
 /// The mass of the box changes with the degrees of freedom.
 void Bath::follow_changes(double h)
 {
@@ -472,16 +437,6 @@ void Bath::follow_changes(double h)
   for (int c = 0; c < thermostats; ++c)
     chains[c].join(before[c], target_of(c, 0.0, h), twice_of(c));
   heat.add(0.5 * (of_box - box.twice_kinetic()));
-}
-
-void Bath::follow_velocities(double h)
-{
-  if (isokinetic.acts() || !acts()) return;
-  measure();
-  for (int c = 0; c < thermostats; ++c) {
-    const ChainTarget target = target_of(c, 0.0, h);
-    chains[c].join(target, target, twice_of(c));
-  }
 }
 
 void Bath::keep()
@@ -710,7 +665,7 @@ void Bath::fields(Fields &v)
     if (v.reads()) randomly_taken = comm->me == 0 ? all : 0.0;
   }
   if (isokinetic.acts() || !acts()) return;
-  v(chains, cold, made, temperature);
+  v(chains, made, temperature);
   if (box.moves()) v(box, heat);
   if (!v.reads()) return;
   temperature.line = made.line;

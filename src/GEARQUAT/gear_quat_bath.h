@@ -6,7 +6,7 @@
 /* What acts on all bodies of a fix together, the last three by a friction that depends on sums over
    all of them:
 
-     keyword langevin      a random step of all momenta between steps (gear_quat_langevin.h)
+     keyword langevin      a random step of all momenta between steps (gear_quat_friction.h)
      keyword temp          Nose-Hoover chains (gear_quat_chain.h), driven by the temperature
      keyword isokinetic    Gauss's principle (gear_quat_temperature.h)
      keywords of pressure  a box that moves (gear_quat_barostat.h), with chains or without
@@ -84,8 +84,7 @@ class Bath : protected Pointers {
   /// determine friction, chains and box at the end of the step.
   void begin_correction(double h);
   bool needs_sums() const { return acts() && !isokinetic.acts(); }
-  void add(const Integrator &integrator, const Friction &friction, const Block &block,
-           const int *ids);    ///< local
+  void add(const Integrator &integrator, const Block &block, const int *ids);    ///< local
   void find_friction(const Integrator &integrator);
   void conclude(double h);    ///< local
   /// Of a body without masks or a flow, whose center is scaled.  Local.
@@ -97,12 +96,8 @@ class Bath : protected Pointers {
   /// Corrected states with scaled centers become unscaled.  predicted: their scaled centers.  Local.
   void place(const Block &block, const int *ids, const double (*predicted)[3]);
   void end_correction(const Integrator &integrator);
-  /// The step of length h is accepted.  Warns once of bodies that a thermostat cannot warm.
-  void note_step(double h);
   /// Called in an accepted step, after insertions have histories and removals are complete.
   void follow_changes(double h);
-  /// Other fixes have changed velocities of bodies.
-  void follow_velocities(double h);
   /// Saves variables for a step that may be undone; put_back() restores them.  Local.
   void keep();
   void put_back();
@@ -162,11 +157,9 @@ class Bath : protected Pointers {
   Setting made = {};          ///< of the last step
   bool same_bodies = true;    ///< no insertion or removal in this step
   enum { OF_BOX = 2 };
-  double xi[3] = {};      ///< xi_1 of the chains
-  Friction of_all;        ///< of a body without masks or a flow, in the current pass
-  double cold[2] = {};    ///< time that the parts have been cold
-  bool warned[2] = {};    ///< of that
-  std::string told;       ///< last message of the degrees of freedom
+  double xi[3] = {};    ///< xi_1 of the chains
+  Friction of_all;      ///< of a body without masks or a flow, in the current pass
+  std::string told;     ///< last message of the degrees of freedom
 
   // the start: 2K, which drives a chain from the start to each node, and the rate of the heat
 

@@ -31,11 +31,14 @@ std::string GearQuat::words_of(const Rate &rate)
                      rate.radians, rate.limit, rate.remedy);
 }
 
-/// The rows of bodies, for the present step.  edge: radians of vibrations in a step.  Collective.
+/// The rows of bodies, for the present step.  edge: radians of vibrations in a step, infinite if
+/// unknown.  Collective.
 void Step::note_rates(double edge)
 {
   rates.clear();
   if (tolerance) return;
+  const bool noisy = noise_of_forces(lmp, ownership).noise != Noise::NONE;
+  if (noisy || !std::isfinite(edge)) edge = 0.0;
   const double h = std::fabs(length());
   const auto add = [&](const char *what, double radians, double limit, double advised) {
     rates.push_back({what, radians, limit,
@@ -59,22 +62,6 @@ std::vector<Rate> Step::all_rates(double h) const
   std::vector<Rate> table = bath.rates(h);
   table.insert(table.end(), rates.begin(), rates.end());
   return table;
-}
-
-/// Radians of vibrations in a step by the present loads, of many bodies; 0 if they do not show
-/// them.  Collective.
-double Step::edge_by_loads() const
-{
-  constexpr bigint MANY = 10;
-  MotionSums here;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    double torque_body[3];
-    to_body(bodies.axes(ibody), bodies.acting(ibody).torque_space, torque_body);
-    here.add(bodies.rigid_of(ibody), bodies.state_of(ibody), torque_body);
-  }
-  const double edge = fast_edge(here);
-  const bool noisy = noise_of_forces(lmp, ownership).noise != Noise::NONE;
-  return std::isfinite(edge) && !noisy && bodies.number() >= MANY ? edge : 0.0;
 }
 
 /// Rank 0 warns once of the first rate that is too large; others may have the same cause.
@@ -146,7 +133,7 @@ void Step::stop(int ibody, const BodyState &s, double h, double **f) const
       "Fix gear/quat: blow-up in step {}, time {:g}: body {} {}; the largest force acts on its "
       "atom {}; {}",
       update->ntimestep, time_step.time_of(update->ntimestep), bodies.body_at(ibody).id,
-      what_happened(ibody, s, h), worst, remedy(ibody, s, h));
+      what_happened(ibody, s, h), worst, remedy(ibody, h));
   if (large) error->all(FLERR, text);
   error->one(FLERR, text);
 }
@@ -168,7 +155,7 @@ std::string Step::what_happened(int ibody, const BodyState &s, double h) const
                      GearQuat::length(s.omega_body) * std::fabs(h), under);
 }
 
-std::string Step::remedy(int ibody, const BodyState &s, double h) const
+std::string Step::remedy(int ibody, double h) const
 {
   constexpr char APART[] = "begin with atoms farther apart, for example after minimize or a run "
                            "with keywords tolerance and temp";

@@ -12,8 +12,7 @@
      X'' = M^-1 [F/m - (2 G + b.G + xi) v],   v = M X',   G = M' M^-1,   b.G = sum_a b_a G_aa     (P3)
      M'' = (G' + G^2) M                                                                           (P4)
 
-   The host provides the drive, G' without its friction.  The cell is integrated in the second-order
-   form in both formulations of the bodies; formulation first has the momentum m X'.
+   The host provides the drive, G' without its friction.
 
    Sources: G. J. Martyna, D. J. Tobias, M. L. Klein, J. Chem. Phys. 101, 4177 (1994), section II.
    For an upper triangular cell the weights b follow from the requirement that the flow conserves
@@ -59,20 +58,10 @@ class CellHistory {
   CellHistory() = default;
   explicit CellHistory(const Scheme &of_bodies) { set_scheme(of_bodies); }
 
-  static Scheme scheme_of(const Scheme &bodies)
-  {
-    Scheme scheme = bodies;
-    if (scheme.first()) {
-      scheme.rows = std::max(scheme.values(), SECOND_FEWEST);
-      scheme.formulation = Formulation::SECOND;
-    }
-    return scheme;
-  }
   void set_scheme(const Scheme &of_bodies)
   {
-    const Scheme scheme = scheme_of(of_bodies);
-    n = scheme.values();
-    set_coefficients(CorrectorCoefficients(scheme));
+    n = of_bodies.values();
+    set_coefficients(CorrectorCoefficients(of_bodies));
   }
   /// For the next step.
   void set_coefficients(const CorrectorCoefficients &all)

@@ -33,7 +33,7 @@
 
    Gear's c_0 and c_1 are the solutions for Gear's tails. */
 
-#include "gear_quat_coefficients.h"
+#include "gear_quat_history.h"
 
 #include <stdexcept>
 #include <string>

@@ -15,7 +15,7 @@
 #ifndef GEAR_QUAT_EXACT_SUM_H
 #define GEAR_QUAT_EXACT_SUM_H
 
-#include "gear_quat_lanes.h"
+#include "gear_quat_math.h"
 
 #include <cmath>
 

@@ -32,6 +32,12 @@ static constexpr int COLUMNS = 20;
 
 namespace {
 
+/// A line of the file.
+struct GivenLine {
+  tagint id;
+  GivenBody body;
+};
+
 static constexpr int NUMBERS = GivenBody::NUMBERS;
 static_assert(offsetof(GivenBody, image) == NUMBERS * sizeof(double), "as many words in a line");
 
@@ -148,33 +154,6 @@ GivenBodies GearQuat::read_given_bodies(LAMMPS *lmp, const std::string &filename
   GivenBodies bodies;
   for (const auto &line : gather(lines, lmp->world)) bodies[line.id] = line.body;
   return bodies;
-}
-
-void GearQuat::write_given_bodies(LAMMPS *lmp, const std::string &filename,
-                                  const std::string &title, std::vector<GivenLine> &mine)
-{
-  const auto before = [](const GivenLine &a, const GivenLine &b) {
-    return a.id < b.id;
-  };
-  const std::vector<GivenLine> all = gather_sorted(mine, lmp->world, before, 0);
-  if (lmp->comm->me != 0) return;
-  const auto refuse = [&] {
-    lmp->error->one(FLERR, "Fix gear/quat: cannot write file {}: {}", filename,
-                    utils::getsyserror());
-  };
-  const std::string unfinished = filename + ".tmp";
-  FILE *file = fopen(unfinished.c_str(), "w");
-  if (!file) refuse();
-  fprintf(file, "# %s\n\n%zu\n", title.c_str(), all.size());
-  for (const GivenLine &line : all) {
-    double numbers[NUMBERS];
-    std::memcpy(numbers, &line.body, sizeof(numbers));
-    fprintf(file, TAGINT_FORMAT, line.id);
-    for (const double number : numbers) fprintf(file, " %.16e", number);
-    fprintf(file, " %d %d %d\n", line.body.image[0], line.body.image[1], line.body.image[2]);
-  }
-  const bool failed = ferror(file) != 0;
-  if (fclose(file) != 0 || failed || rename(unfinished.c_str(), filename.c_str()) != 0) refuse();
 }
 
 /* ----------------------------------------------------------------------

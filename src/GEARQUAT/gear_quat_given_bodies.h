@@ -20,7 +20,6 @@
 
 #include <map>
 #include <string>
-#include <vector>
 
 namespace LAMMPS_NS {
 class LAMMPS;
@@ -43,21 +42,9 @@ struct GivenBody {
 
 using GivenBodies = std::map<tagint, GivenBody>;
 
-/// A line of the file.
-struct GivenLine {
-  tagint id;
-  GivenBody body;
-};
-
 /// Reads on rank 0, returns on all ranks; none for an empty filename.  Any error in the file ends
 /// the run on all ranks with a message that gives the file and line.
 GivenBodies read_given_bodies(LAMMPS *lmp, const std::string &filename);
-
-/// Writes the lines of all ranks, sorted by ID, with all digits.  A write error ends the run.  The
-/// file is complete at any time: it is written under another name and then renamed.  title: a
-/// comment.  Collective.
-void write_given_bodies(LAMMPS *lmp, const std::string &filename, const std::string &title,
-                        std::vector<GivenLine> &mine);
 
 /// Properties given in a molecule template, in the frame of the template.
 struct StatedMolecule {

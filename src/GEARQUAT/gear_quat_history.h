@@ -13,6 +13,11 @@
 
    The scheme defines the numbers of rows and carries, and the columns.
 
+   Corrector coefficients: after prediction the residual r of the differential equation is fed back
+   into every row, y_j += c_j r, with
+     first-order equation   r = h y' - y_1           c_1 = 1
+     second-order equation  r = h^2/2 y'' - y_2      c_2 = 1
+
    Kinematics reads pose and velocities of a body from the rows of its history, before or after a
    correction, and writes velocities into them. gear_quat_integrator.h has the evolution in time. */
 
@@ -24,6 +29,7 @@
 #include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
 
 namespace LAMMPS_NS::GearQuat {
 
@@ -106,6 +112,40 @@ constexpr int MAX_SIZE = (FIRST_MOST + 2) * Scheme::FIRST_WIDTH >
         (MOST_ROWS + 4) * Scheme::SECOND_WIDTH
     ? (FIRST_MOST + 2) * Scheme::FIRST_WIDTH
     : (MOST_ROWS + 4) * Scheme::SECOND_WIDTH;
+
+/* ---------------------------------------------------------------------- */
+
+/// gamma_k, the magnitude of the weight of the k-th backward difference in the formulas of Adams
+/// and Moulton, k >= 1: sum over i = 0..k of signed weights / (k + 1 - i) vanishes.
+long double adams_moulton(int k);
+
+/// Gear's coefficients of a first-order equation, N values; of order N, and of order N + 1 for even
+/// N if the motion is slow.
+std::vector<long double> first_order_coefficients(int values);
+
+/// Gear's coefficients of a second-order equation, N values. velocity_c0: for right-hand sides that
+/// depend on velocities, of order N - 1; otherwise for right-hand sides of positions alone, of order
+/// N, and of order N + 1 for even N if the motion is slow.
+std::vector<long double> second_order_coefficients(int values, bool velocity_c0);
+
+/// All N tuned coefficients, from SECOND_FEWEST to SECOND_MOST values; empty for other numbers.
+std::vector<long double> tuned_coefficients(int values);
+
+/// Coefficients of all columns, and the weight of residuals in the local error.
+struct CorrectorCoefficients {
+  using Array = std::array<double, MOST_ROWS>;
+
+  Array c = {};            ///< first: of all columns, which have equations of the first order
+  double weight2 = 0.0;    ///< of the residuals of positions and quaternions, squared
+  double moment = 0.0;    ///< momentum: of the error of the predicted L, see gear_quat_integrator.h
+
+  CorrectorCoefficients() = default;
+  /// Throws std::domain_error if the scheme is tuned and has a number of values without a tuned
+  /// set.
+  explicit CorrectorCoefficients(const Scheme &scheme);
+};
+
+/* ---------------------------------------------------------------------- */
 
 template <int WIDTH, int CARRIES = 0> struct Nordsieck {
   static double *carry_of(double *rows, int n, int row) { return rows + (n + row) * WIDTH; }
@@ -299,8 +339,7 @@ class Kinematics {
   void body_state(const RigidBody &body, const double *rows, BodyState &state,
                   BodyFrame &frame) const
   {
-    if (scheme.first()) return find_state<Formulation::FIRST>(body, rows, state, frame);
-    if (!scheme.momentum()) return find_state<Formulation::SECOND>(body, rows, state, frame);
+    if (!scheme.momentum()) return find_state(body, rows, state, frame);
     copy(rows + Scheme::POSITION, 3, state.center);
     copy(rows + Scheme::SECOND_QUATERNION, 4, state.q);
     velocities_of_rows(body.inertia, rows + Scheme::SECOND_WIDTH, state.q, per_h, state.velocity,
@@ -317,52 +356,10 @@ class Kinematics {
                                          : rates[Scheme::POSITION + i] * per_h;
   }
 
-  /// Velocities of the state into a history of the same pose, and with them the accelerations that
-  /// depend on velocities: of the rotation and, in formulation first, of the load, which may be
-  /// damped.  Other derivatives do not change.  load: at this pose.
-  ///
-  /// The corrector sets these rows too, except for the second derivative of the quaternion in
-  /// formulation first.  This derivative changes only by its dependence on the velocities: setting
-  /// it in every step would be a different corrector, unstable with 8 values.
+  /// Formulation momentum: velocities of the state into a history of the same pose.  With velocity
+  /// Verlet also the accelerations, which may depend on velocities by a friction.  load: at this pose.
   void set_velocities(const RigidBody &body, const BodyState &state, const Load &load,
-                      double *rows) const
-  {
-    if (scheme.momentum()) {
-      set_momenta(body, state, load, rows);
-      return;
-    }
-    set_acceleration(body, load, rows);
-    const int width = scheme.width(), quat = scheme.quaternion(), row = scheme.first() ? 0 : 1;
-    double *rates = rows + width, *qddot = rates + width + quat;
-    double omegadot_body[3], qdot[4], now[4], kept[4] = {};
-    angular_acceleration(body, state, scheme.norm2(state.q), load, omegadot_body);
-    quaternion_rate(rows + quat, state.omega_body, qdot);
-    quaternion_acceleration(rows + quat, qdot, omegadot_body, now);
-    if (scheme.first()) {
-      double scaled[3], before[4];    // times h, h^2
-      for (int i = 0; i < 3; ++i) scaled[i] = h * rates[Scheme::OMEGA + i];
-      quaternion_acceleration(rows + quat, rates + quat, scaled, before);
-      for (int i = 0; i < 4; ++i) kept[i] = qddot[i] - 0.5 * before[i];
-    }
-    for (int i = 0; i < 3; ++i) rates[Scheme::POSITION + i] = h * state.velocity[i];
-    for (int i = 0; i < 4; ++i) {
-      rates[quat + i] = h * qdot[i];
-      qddot[i] = kept[i] + 0.5 * h * h * now[i];
-    }
-    if (scheme.first()) {
-      for (int i = 0; i < 3; ++i) {
-        rows[Scheme::MOMENTUM + i] = body.mass * state.velocity[i];
-        rates[Scheme::MOMENTUM + i] = h * load.force[i];
-        rates[Scheme::OMEGA + i] = h * omegadot_body[i];
-      }
-      copy(state.omega_body, 3, rows + Scheme::OMEGA);
-    }
-    if (!scheme.compensate) return;
-    double *carry = rows + (scheme.values() + row) * width;    // of the row that has the velocities
-    std::fill(carry + (scheme.first() ? Scheme::MOMENTUM : 0),
-              carry + (scheme.first() ? Scheme::MOMENTUM + 3 : width), 0.0);
-    if (scheme.first()) std::fill_n(carry + Scheme::OMEGA, 3, 0.0);
-  }
+                      double *rows) const;
 
   /// d(|q|^2/2)/dt from the history; it should vanish.
   double radial_rate(const double *rows) const
@@ -391,60 +388,9 @@ class Kinematics {
   }
 
  private:
-  /// The last row of velocity Verlet, of a center.
-  void set_acceleration(const RigidBody &body, const Load &load, double *rows) const
-  {
-    double *seconds = rows + 2 * scheme.width();
-    for (int i = 0; i < 3 && scheme.is_verlet(); ++i)
-      seconds[Scheme::POSITION + i] = 0.5 * h * h * load.force[i] / body.mass;
-  }
-
-  /// set_velocities() of formulation momentum: accelerations depend on velocities by a friction only.
-  void set_momenta(const RigidBody &body, const BodyState &state, const Load &load,
-                   double *rows) const
-  {
-    double *seconds = rows + 2 * scheme.width();
-    set_acceleration(body, load, rows);
-    for (int i = 0; i < 3 && scheme.is_verlet(); ++i)
-      seconds[Scheme::ANGULAR_MOMENTUM + i] = 0.5 * h * h * load.torque_space[i];
-    double momentum[3], *rates = rows + scheme.width();
-    momentum_along_space(body, state, momentum);
-    for (int i = 0; i < 3; ++i) {
-      rates[Scheme::POSITION + i] = h * state.velocity[i];
-      rates[Scheme::ANGULAR_MOMENTUM + i] = h * momentum[i];
-    }
-    if (scheme.compensate)
-      std::fill_n(rows + (scheme.values() + 1) * scheme.width(), scheme.width(), 0.0);
-  }
-
-  /// All values are read before any is written: the output may alias `rows`.
-  template <Formulation FORM>
+  /// Formulations first and second.
   void find_state(const RigidBody &body, const double *rows, BodyState &state,
-                  BodyFrame &frame) const
-  {
-    constexpr bool FIRST = FORM == Formulation::FIRST;
-    constexpr int QUATERNION = FIRST ? Scheme::FIRST_QUATERNION : Scheme::SECOND_QUATERNION;
-    const double *rates = rows + (FIRST ? Scheme::FIRST_WIDTH : Scheme::SECOND_WIDTH);
-    double center[3], q[4], velocity[3], omega_body[3];
-    copy(rows + Scheme::POSITION, 3, center);
-    copy(rows + QUATERNION, 4, q);
-    const double norm2 = scheme.norm2(q);
-    if (FIRST) {
-      for (int i = 0; i < 3; ++i) velocity[i] = rows[Scheme::MOMENTUM + i] / body.mass;
-      copy(rows + Scheme::OMEGA, 3, omega_body);
-    } else {
-      double qdot[4];
-      for (int i = 0; i < 3; ++i) velocity[i] = rates[Scheme::POSITION + i] * per_h;
-      for (int i = 0; i < 4; ++i) qdot[i] = rates[QUATERNION + i] * per_h;
-      angular_velocity(q, norm2, qdot, omega_body);
-    }
-    copy(center, 3, state.center);
-    copy(q, 4, state.q);
-    copy(velocity, 3, state.velocity);
-    rotation_matrix(q, norm2, frame.axes);
-    copy(omega_body, 3, state.omega_body);
-    to_space(frame.axes, omega_body, frame.omega_space);
-  }
+                  BodyFrame &frame) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -6,7 +6,6 @@
 #include "gear_quat_outputs.h"
 
 #include "gear_quat_ranks.h"
-#include "gear_quat_shapes.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -106,30 +105,6 @@ double Outputs::global(int row, int column)
     gathered = sites.placements();
   }
   return row < (int) all.size() ? all[row][column] : 0.0;
-}
-
-std::vector<GivenLine> Outputs::lines() const
-{
-  std::vector<GivenLine> made;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const RigidBody &rigid = bodies.rigid_of(ibody);
-    const double *q = bodies.state_of(ibody).q;
-    Row row;
-    fill_row(ibody, row.data());
-    GivenBody body = {};
-    body.mass = rigid.mass;
-    std::copy_n(&row[CENTER], 3, body.center);
-    std::copy_n(&row[VELOCITY], 3, body.velocity);
-    std::copy_n(&row[ANGULAR_MOMENTUM], 3, body.angular_momentum_space);
-    std::copy_n(&row[IMAGE], 3, body.image);
-    double a[9], t[9] = {};
-    rotation_matrix(q, dot4(q, q), a);
-    add_tensor(rigid.inertia, a, t);
-    const double tensor[6] = {t[0], t[4], t[8], t[1], t[2], t[5]};
-    std::copy_n(tensor, 6, body.inertia);
-    made.push_back({bodies.body_at(ibody).id, body});
-  }
-  return made;
 }
 
 /// A center in the box and its image flags, also if they exceed the range of integers.

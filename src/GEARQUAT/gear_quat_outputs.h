@@ -48,9 +48,6 @@ class Outputs : protected Pointers {
   /// request after sites were listed or placed: collective.
   double global(int row, int column);
 
-  /// Owned bodies as lines of an infile.
-  std::vector<GivenLine> lines() const;
-
   /// Data that other C++ code may request from the fix by name, see Fix::extract(): names as in fix
   /// rigid where they exist.  Bodies are numbered as in the local data, owned bodies first.  Null
   /// for an unknown name.  The result is valid until atoms or bodies are exchanged, created or

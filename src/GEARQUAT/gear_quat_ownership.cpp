@@ -98,16 +98,15 @@ bool Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
   if (any_extended && !records.has_records()) records.reset(true, (int) assigned.size());
 
   bool free = false;
-  const Assembly assembly(lmp, given, any_extended ? &records : nullptr, ids);
-  assembly.for_sites([&](const Assembly::Made &one, int i, const double *arm_body) {
+  const auto act = [&](const AssembledBody &one, int i, const double *arm_body) {
     assigned[i].id = one.body.id;
     assigned[i].owner = one.owner;
     assigned[i].mass = mass_of(i);
     std::copy_n(arm_body, 3, assigned[i].arm);
     free = free || one.moves_apart(atom->v[i], arm_body);
     if (any_extended) records.attach(i, mass_of(i), one.state.q);
-  });
-  for (const auto &one : assembly.bodies()) {
+  };
+  for (const auto &one : assemble(lmp, given, any_extended ? &records : nullptr, ids, act)) {
     if (one.owner_rank != comm->me) continue;
     const int ibody = add_owned(one.local);
     bodies.change_body(ibody) = one.body;
@@ -239,13 +238,6 @@ struct AtomsOfBody {
 };
 
 }    // namespace
-
-bigint Ownership::loose_atoms(int groupbit) const
-{
-  bigint here = 0;
-  for (int i = 0; i < atom->nlocal; ++i) here += (atom->mask[i] & groupbit) && !in_body(i);
-  return over_ranks(MPI_SUM, here, world);
-}
 
 Comparison Ownership::count_atoms(int groupbit) const
 {

@@ -98,8 +98,6 @@ class Ownership : protected Pointers {
   /// time.  groupbit: the group whose degrees of freedom are requested, 0 for none.
   /// Collective.
   Comparison count_atoms(int groupbit = 0) const;
-  /// Atoms of the group that are in no body.  Collective.
-  bigint loose_atoms(int groupbit) const;
   /// The IDs of all bodies, sorted, on all ranks.  Collective.
   std::vector<tagint> all_ids() const;
   /// Sets these masks, by IDs, for all bodies.  True if one has changed; collective.

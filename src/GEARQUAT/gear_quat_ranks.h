@@ -131,39 +131,30 @@ inline std::string broadcast(std::string text, World world, int root)
   return text;
 }
 
-constexpr int EVERY_RANK = -1;
-
-/// Gathers the items of all ranks in the order of the ranks, on one rank (empty elsewhere) or on
-/// all.  T: without pointers, since it is sent as bytes.
-template <typename T>
-std::vector<T> gather(std::vector<T> &mine, World all_ranks, int root = EVERY_RANK)
+/// Gathers the items of all ranks in the order of the ranks.  T: without pointers, since it is sent
+/// as bytes.
+template <typename T> std::vector<T> gather(std::vector<T> &mine, World all_ranks)
 {
   const MPI_Comm world = all_ranks.comm;
-  int here = (int) mine.size(), me, ranks;    // not const: required by LAMMPS' MPI stubs
-  MPI_Comm_rank(world, &me);
+  int here = (int) mine.size(), ranks;    // not const: required by LAMMPS' MPI stubs
   MPI_Comm_size(world, &ranks);
   std::vector<int> counts(ranks, 0), starts(ranks, 0);
   MPI_Allgather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
   std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
-  std::vector<T> all(root == EVERY_RANK || root == me ? starts.back() + counts.back() : 0);
+  std::vector<T> all(starts.back() + counts.back());
   MPI_Datatype type;
   MPI_Type_contiguous(sizeof(T), MPI_BYTE, &type);
   MPI_Type_commit(&type);
-  if (root == EVERY_RANK)
-    MPI_Allgatherv(mine.data(), here, type, all.data(), counts.data(), starts.data(), type, world);
-  else
-    MPI_Gatherv(mine.data(), here, type, all.data(), counts.data(), starts.data(), type, root,
-                world);
+  MPI_Allgatherv(mine.data(), here, type, all.data(), counts.data(), starts.data(), type, world);
   MPI_Type_free(&type);
   return all;
 }
 
 /// The gathered items, sorted.
 template <typename T, class Before = std::less<T>>
-std::vector<T> gather_sorted(std::vector<T> &mine, World world, Before before = Before(),
-                             int root = EVERY_RANK)
+std::vector<T> gather_sorted(std::vector<T> &mine, World world, Before before = Before())
 {
-  std::vector<T> all = gather(mine, world, root);
+  std::vector<T> all = gather(mine, world);
   std::sort(all.begin(), all.end(), before);
   return all;
 }

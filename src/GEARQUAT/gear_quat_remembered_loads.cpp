@@ -120,57 +120,43 @@ void RememberedLoads::change(bool more, double h, const std::function<void(const
   if (more) compares = false;
 }
 
-Correction RememberedLoads::correct(const StepControl &control, const Integrator &integrator,
-                                    const RigidBody &body, double reach, const Load &load,
-                                    const double *axes, double *rows, StepErrors &found) const
-{
-  const Row before = accelerations(rows);
-  const Correction correction = integrator.correct(body, load, rows);
-  Row dropped, change, place, rate;
-  std::copy_n(trial_of(rows) + Scheme::SECOND_WIDTH, Scheme::SECOND_WIDTH, dropped.begin());
-  found = errors(control, integrator, body, reach, load, axes, before, rows, change);
-  for (int i = 0; i < Scheme::SECOND_WIDTH; ++i) {
-    place[i] = lag[0] * change[i] - lag_of_dropped[0] * dropped[i];
-    rate[i] = lag[1] * change[i] - lag_of_dropped[1] * dropped[i];
-  }
-  integrator.displace(body, place.data(), rate.data(), rows);
-  return correction;
-}
-
-StepErrors RememberedLoads::errors(const StepControl &control, const Integrator &integrator,
+StepErrors RememberedLoads::finish(const StepControl &control, const Integrator &integrator,
                                    const RigidBody &body, double reach, const Load &load,
                                    const double *axes, const Row &before, double *rows,
-                                   Row &change) const
+                                   Last last) const
 {
-  double *trial = trial_of(rows), turn[3];
+  constexpr int WIDTH = Scheme::SECOND_WIDTH;
+  double *trial = trial_of(rows), *dropped = trial + WIDTH, *now = rows + 2 * WIDTH;
   const auto size = [&](const double *row) {
     return size_of(body, reach, axes, row);
   };
-  const double *now = rows + 2 * Scheme::SECOND_WIDTH;
-  Row residual;
-  for (int i = 0; i < Scheme::SECOND_WIDTH; ++i) {
+  Row residual, change, place, rate;
+  for (int i = 0; i < WIDTH; ++i) {
     residual[i] = now[i] - before[i];
     change[i] = to_trial * residual[i] - trial[i];
     trial[i] += change[i];
-    trial[Scheme::SECOND_WIDTH + i] = 0.0;
+    place[i] = lag[0] * change[i] - lag_of_dropped[0] * dropped[i];
+    rate[i] = lag[1] * change[i] - lag_of_dropped[1] * dropped[i];
+    dropped[i] = 0.0;
   }
   StepErrors found;
-  found.fewer = std::fabs(of_fewer) * size(rows + (k + 1) * Scheme::SECOND_WIDTH);
+  found.fewer = std::fabs(of_fewer) * size(rows + (k + 1) * WIDTH);
   found.more = std::fabs(of_more) * size(change.data());
   const double most = size(residual.data());
   found.same = std::fabs(corrector.c[1]) * most;
   found.error = std::fabs(corrector.c[0]) * most;
-  if (!control.energy) return found;
-
-  const BodyState state = integrator.body_state(body, rows);
-  Integrator::turn_of(body, axes, &residual[Scheme::ANGULAR_MOMENTUM], turn);
-  const double way = GearQuat::length(residual.data()), per_h = 1.0 / integrator.step();
-  double rates = body.mass * GearQuat::length(state.velocity) * way;
-  for (int i = 0; i < 3; ++i) rates += body.inertia[i] * std::fabs(state.omega_body[i] * turn[i]);
-  found.error = std::fabs(corrector.c[0]) *
-          (GearQuat::length(load.force) * way +
-           GearQuat::length(load.torque_space) * GearQuat::length(turn)) +
-      std::fabs(corrector.c[1] * per_h) * rates;
+  if (control.energy) {
+    double turn[3];
+    const BodyState state = integrator.body_state(body, rows);
+    Integrator::turn_of(body, axes, &residual[Scheme::ANGULAR_MOMENTUM], turn);
+    const double way = length(residual.data()), per_h = 1.0 / integrator.step();
+    double rates = body.mass * length(state.velocity) * way;
+    for (int i = 0; i < 3; ++i) rates += body.inertia[i] * std::fabs(state.omega_body[i] * turn[i]);
+    found.error = std::fabs(corrector.c[0]) *
+            (length(load.force) * way + length(load.torque_space) * length(turn)) +
+        std::fabs(corrector.c[1] * per_h) * rates;
+  }
+  if (last == Last::INTEGRATED_AGAIN) integrator.displace(body, place.data(), rate.data(), rows);
   return found;
 }
 

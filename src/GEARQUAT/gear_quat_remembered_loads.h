@@ -96,17 +96,14 @@ class RememberedLoads {
     return row;
   }
 
-  /// Integrator::correct(), and the errors of the step.  reach: displacement of the outermost part
-  /// of the body per radian.
-  Correction correct(const StepControl &control, const Integrator &integrator,
-                     const RigidBody &body, double reach, const Load &load, const double *axes,
-                     double *rows, StepErrors &found) const;
+  /// What happens to the last steps when a body is corrected.  A bath depends on all poses: KEPT.
+  enum class Last { KEPT, INTEGRATED_AGAIN };
 
-  /// The errors of a step whose predicted accelerations were `before`.  axes: of any pose of the
-  /// step.  change: of the trial row.
-  StepErrors errors(const StepControl &control, const Integrator &integrator, const RigidBody &body,
+  /// The errors of a step whose predicted accelerations were `before`, after Integrator::correct().
+  /// reach: displacement of the outermost part of the body per radian.  axes: of any pose of the step.
+  StepErrors finish(const StepControl &control, const Integrator &integrator, const RigidBody &body,
                     double reach, const Load &load, const double *axes, const Row &before,
-                    double *rows, Row &change) const;
+                    double *rows, Last last = Last::INTEGRATED_AGAIN) const;
 
   /// A step of h is complete.
   void conclude(double h);

@@ -3,12 +3,10 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-#include "gear_quat_report.h"
+/* Before a run: what is refused, and the report about the simulation. */
 
-#include "gear_quat_arguments.h"
 #include "gear_quat_ranks.h"
 #include "gear_quat_step.h"
-#include "gear_quat_styles.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -26,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -175,12 +174,9 @@ std::string Report::effects() const
   for (int top = 0; top < TOPS; ++top)
     if (count[top]) tops.push_back(fmt::format("{}: {}", NAMES[top], count[top]));
   row("rotation", count[POINT] < count[BODIES], utils::join_words(tops, ", "));
-  const bool forces = makes_forces(lmp, fix);
-  row("torques of forces", count[OFF_CENTER] > 0 && forces,
-      !forces ? "nothing in the scene makes forces"
-          : count[OFF_CENTER]
-          ? fmt::format("{} sites are off the center of mass", count[OFF_CENTER])
-          : "every site is at its center of mass");
+  row("torques of forces", count[OFF_CENTER] > 0,
+      count[OFF_CENTER] ? fmt::format("{} sites are off the center of mass", count[OFF_CENTER])
+                        : "every site is at its center of mass");
   row("finite size", count[EXTENDED] > 0,
       count[EXTENDED] ? fmt::format("{} sites are more than points", count[EXTENDED])
                       : "all sites are points");
@@ -238,7 +234,8 @@ std::string Report::pairs(const Fleet &fleet) const
 {
   constexpr double WORTH = 0.01;                      // minimum share of pairs for a line
   const std::vector<double> label = labels(fleet);    // of atoms, including ghosts: what moves them
-  const bool is_own = !meets_itself(), acts = exerts_forces(force->pair, force->pair_style);
+  const bool is_own = !meets_itself();
+  const bool acts = force->pair && strcmp(force->pair_style, "zero") != 0;
   bigint here[4] = {};                      // pairs, among still atoms, within bodies; still atoms
   using Example = std::array<tagint, 3>;    // body, two of its atoms, whose forces are not excluded
   std::vector<Example> found;               // the first body on this rank

@@ -325,9 +325,9 @@ void Sites::sum_over_sites(Start start, Add add, Finish finish) const
   }
 }
 
-/// The loads of all bodies from the forces on the sites: three numbers of each owned atom.
-void Sites::gather(const double *forces, double **torque)
+void Sites::gather_loads(double **f, double **torque)
 {
+  const double *const forces = first_of(f);
   std::vector<Load> &loads = bodies.change_loads();
   sum_over_sites(
       [](int) {
@@ -356,33 +356,6 @@ void Sites::gather(const double *forces, double **torque)
       loads[ibody].force[k] *= ftm2v;
       loads[ibody].torque_space[k] *= ftm2v;
     }
-}
-
-void Sites::expect_forces(bool any)
-{
-  any_forces = any;
-  if (!any) std::fill(bodies.change_loads().begin(), bodies.change_loads().end(), Load());
-}
-
-void Sites::gather_loads(double **f, double **torque)
-{
-  if (any_forces) gather(first_of(f), torque);
-}
-
-bool Sites::gather_impulses()
-{
-  std::vector<double> impulses(3 * (size_t) atom->nlocal);
-  int differs = 0;
-  for (const Site &site : sites) {
-    const Expected expected = expected_velocity(site);
-    const double mass = ownership.mass_of(site.atom) / force->ftm2v, *v = atom->v[site.atom];
-    if (!near(v, expected)) differs = 1;
-    for (int k = 0; k < 3; ++k)
-      impulses[3 * (size_t) site.atom + k] = mass * (v[k] - expected.value[k]);
-  }
-  if (!over_ranks(MPI_MAX, differs, world)) return false;
-  gather(impulses.data(), nullptr);
-  return true;
 }
 
 void Sites::add_arm_virial(double **f, ExactSum *sums, double scale) const

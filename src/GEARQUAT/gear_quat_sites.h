@@ -93,14 +93,9 @@ class Sites : protected Pointers {
 
   // sums over sites
 
-  /// any: there may be forces; otherwise no loads are gathered.
-  void expect_forces(bool any);
   /// Loads of all bodies that this rank moves, from the forces on the sites of all ranks.  torque:
   /// of the atoms themselves, used for extended atoms; null for none.
   void gather_loads(double **f, double **torque);
-  /// Sums the momenta due to differences between velocities of atoms and their bodies, as loads.
-  /// False, without sums, if there are none on any rank.  Collective.
-  bool gather_impulses();
 
   /// Adds the products of forces on owned sites and their arms, f_a d_b for xx yy zz yz xz xy: as
   /// exact sums of this scale over the bodies.
@@ -132,7 +127,6 @@ class Sites : protected Pointers {
   std::vector<int> image;                     ///< of the sites: index of the image
   std::vector<std::array<double, 3>> ways;    ///< scratch: of the images, in the present box
   std::vector<int> first, first_arm;    ///< the first site of each body, and the first with an arm
-  bool any_forces = true;
   Rates face_rates = {};
   int face_group = 1;    ///< bit of the group of fix deform
   int nplacements = 0;
@@ -146,7 +140,6 @@ class Sites : protected Pointers {
   template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place_points();
   template <class Start, class Add, class Finish>
   void sum_over_sites(Start start, Add add, Finish finish) const;
-  void gather(const double *forces, double **torque);
   std::vector<std::array<double, 3>> centroids();
 };
 

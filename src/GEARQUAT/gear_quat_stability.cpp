@@ -70,33 +70,17 @@ void MotionSums::add(const RigidBody &body, const BodyState &state, const Taylor
   const double per_step4 = 1.0 / (step * step * step * step);    // in units of y''
   sums[0] += per_step4 * per_step4 * (size[2] + size[3]);
   sums[1] += per_step4 * (size[0] + size[1]);
-  sums[4] += body.mass * dot3(state.velocity, state.velocity);
-  for (int k = 0; k < 3; ++k) sums[4] += inertia[k] * state.omega_body[k] * state.omega_body[k];
-}
-
-void MotionSums::add(const RigidBody &body, const BodyState &state, const double *torque_body)
-{
-  for (int k = 0; k < 3; ++k) {
-    if (!(body.inertia[k] > 0.0)) continue;
-    sums[2] += torque_body[k] * torque_body[k] / body.inertia[k];
-    sums[3] += body.inertia[k] * state.omega_body[k] * state.omega_body[k];
-  }
+  sums[2] += body.mass * dot3(state.velocity, state.velocity);
+  for (int k = 0; k < 3; ++k) sums[2] += inertia[k] * state.omega_body[k] * state.omega_body[k];
 }
 
 double MotionSums::fast_edge(double h) const
 {
-  const double size = std::fabs(h);
-  if (knows_derivatives(h)) return size * std::pow(sums[0] / sums[1], 0.25);
-  if (sums[3] > 0.0) return EDGE_BY_MEAN * size * std::sqrt(sums[2] / sums[3]);
-  return sums[2] > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
-}
-
-bool MotionSums::knows_derivatives(double h) const
-{
   // a smaller change of velocities in a step is from rounding: the forces between atoms of a body
   // cancel only up to rounding
   constexpr double LEAST_CHANGE = 1.0e-10;
-  return sums[1] > 0.0 && h * h * sums[1] > LEAST_CHANGE * LEAST_CHANGE * sums[4];
+  const bool accelerates = sums[1] > 0.0 && h * h * sums[1] > LEAST_CHANGE * LEAST_CHANGE * sums[2];
+  return accelerates ? std::fabs(h) * std::pow(sums[0] / sums[1], 0.25) : 0.0;
 }
 
 /* ----------------------------------------------------------------------

@@ -16,8 +16,7 @@
    than rounding count as none.  A start has computed these derivatives.  The rows of a history
    cannot replace them: with tuned coefficients the errors of the higher rows make z up to twice as
    large.  Where derivatives are unknown, as beside atoms that other fixes move, five values are
-   taken, which conserve energy up to the longest steps.  The table of rates then has the root mean
-   square frequency of rotations, from the sums of torque^2/I and I omega^2.
+   taken, which conserve energy up to the longest steps.
 
    More values give a higher order, but a narrower range of frequencies that conserves energy.
    The crossover from nine to five values follows from measured drifts of liquids (doc/theory.md).
@@ -92,24 +91,14 @@ struct Rate {
 
 /// Sums over bodies, and over ranks by the host, that measure the frequencies of a motion.
 struct MotionSums {
-  /// numerator and denominator of (z/h)^4, torque^2/I and I omega^2, and twice the kinetic energy of
-  /// bodies with derivatives
-  double sums[5] = {};
+  /// numerator and denominator of (z/h)^4, and twice the kinetic energy
+  double sums[3] = {};
 
   /// A body at the beginning of a series with steps of this length.
   void add(const RigidBody &body, const BodyState &state, const TaylorSeries &series, double step);
-  /// A body with a known load and no derivatives.
-  void add(const RigidBody &body, const BodyState &state, const double *torque_body);
 
-  /// Radians in a step; infinite if unknown, 0 without motion.
+  /// Radians in a step, 0 without accelerations.
   double fast_edge(double h) const;
-  /// True if the fast edge is from derivatives.
-  bool knows_derivatives(double h) const;
-
-  // by the root mean square frequency: 1.75 times that in SPC/E at 300 K, which causes no false
-  // warning, and 4 times and more in fluids whose bodies collide rarely; a step that is advised has
-  // to be short enough for these, too
-  static constexpr double EDGE_BY_MEAN = 3.0, LEAST_PART = 1.75 / EDGE_BY_MEAN;
 };
 
 /// Forces without derivatives: random ones, as of fix langevin or a DPD fluid, and those of

@@ -46,7 +46,7 @@ static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-
 /* ---------------------------------------------------------------------- */
 
 Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
-           Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally) :
+           Ownership &ownership, Sites &sites, const OtherFixes &others, Tally tally) :
     Pointers(lmp),
     fix(fix), args(args), ownership(ownership), time_step(lmp), bath(lmp, fix, args, bodies, sites),
     fleet(fleet), bodies(bodies), sites(sites), others(others), present(args.scheme),
@@ -85,27 +85,12 @@ void Step::init()
     error->all(FLERR,
                "Fix gear/quat tolerance cannot be used with run_style respa, whose levels "
                "have different steps");
-  for (const auto *other : modify->get_fix_list()) {
-    if (other == fix || !tolerance) continue;
-    const Step *same = fleet.find(other);
-    if (known(Fact::TIME_STEP, other) || (same && same->tolerance))
-      error->all(
-          FLERR,
-          "Fix gear/quat tolerance: fix {} ({}) changes the time step too; one fix alone can "
-          "do so",
-          other->id, other->style);
-    if (same && same->args.scheme.tuned())
+  for (const auto *other : modify->get_fix_list())
+    if (tolerance && other != fix && (fleet.find(other) || known(Fact::TIME_STEP, other)))
       error->all(FLERR,
-                 "Fix gear/quat tolerance: fix {} ({}) follows the changing time step, and with "
-                 "tuned coefficients errors from a change decay too slowly; give it corrector "
-                 "gear, or let this fix move its bodies",
+                 "Fix gear/quat tolerance cannot be used with fix {} ({}), which changes the time "
+                 "step, too, or has histories of constant steps",
                  other->id, other->style);
-    if (same && comm->me == 0)
-      error->warning(FLERR,
-                     "Fix gear/quat tolerance: nothing controls the errors of the bodies of fix {} "
-                     "({}), which follows the time step of this fix",
-                     other->id, other->style);
-  }
   if (tolerance && started) tolerance->keep_step();
   follow_length();
 }
@@ -132,8 +117,7 @@ void Step::begin_run()
 {
   const double h = length();
   bath.begin_run(!started, tolerance ? std::min(h, bath.longest_step()) : h);
-  if (tolerance) tolerance->announce_output();
-  if (update->nsteps > 0) note_rates(edge_by_loads());
+  if (update->nsteps > 0) note_rates(edge_rate * std::fabs(h));
   if (update->nsteps > 0 && !started) {    // before anything has changed
     find_limits(h);
     watch_all(atom->f);
@@ -141,13 +125,12 @@ void Step::begin_run()
   phase = Phase::SET_UP;
 }
 
-/// After a run of no step, the next run may begin without a setup.  A short run may have begun at
-/// rest, where loads show no frequency.
+/// After a run of no step, the next run may begin without a setup.
 void Step::end_run()
 {
   constexpr int SHORT = 100;
   if (started && update->nsteps >= SHORT) {
-    note_rates(MotionSums::LEAST_PART * edge_by_loads());
+    note_rates(edge_rate * std::fabs(length()));
     warn_of_rates();
   }
   if (phase == Phase::CORRECTED) {    // LAMMPS has ended the run before its last step
@@ -162,45 +145,24 @@ void Step::end_run()
   if (phase == Phase::ENDED) phase = Phase::BETWEEN;
 }
 
-void Step::take_velocities(bigint of_step, bool end)
-{
-  if (!others.any_taken()) return;
-  const std::vector<int> changed = others.take_velocities(of_step, end);
-  if (!started) return;
-  bath.measure();
-  if (over_ranks(MPI_MAX, (int) !changed.empty(), world)) bath.follow_velocities(length());
-  for (const int ibody : changed)
-    integrator->set_velocities(bodies.rigid_of(ibody), scaled(ibody), acting(ibody),
-                               bodies.history(ibody));
-}
-
 /* ----------------------------------------------------------------------
    which histories continue
 ------------------------------------------------------------------------- */
 
 std::vector<Step *> Step::start(double **f, double **torque)
 {
-  if (phase != Phase::SET_UP) {
-    take_velocities(update->ntimestep - 1, true);
-    return {};
-  }
-  for (Step *one : fleet.members) {
-    one->take_velocities(update->ntimestep - 1, true);
-    one->ownership.spread_states();
-    one->sites.gather_loads(f, torque);
-  }
-  // with keyword tolerance first, since it sets the step of all
-  for (Step *one : fleet.members) {
-    if (!one->tolerance) continue;
-    one->started = !one->has_to_start(f);
-    if (!one->started) one->tolerance->begin(one->bath.longest_step(), fleet.members.front()->fix);
-  }
+  if (phase != Phase::SET_UP) return {};
+  for (Step *one : fleet.members) one->sites.gather_loads(f, torque);
   // histories that could continue start with the others: one polynomial has the forces of all
   std::vector<Step *> together;
   int starts = 0;
   for (Step *one : fleet.members) {
     one->phase = Phase::READY;
-    const bool needs = one->tolerance ? !one->started : one->has_to_start(f);
+    const bool needs = one->has_to_start(f);
+    if (needs && one->tolerance) {
+      one->started = false;
+      one->tolerance->begin(one->bath.longest_step());
+    }
     if (needs) one->watch_loads(f);
     if (one->bootstraps()) {
       together.push_back(one);
@@ -323,11 +285,8 @@ void Step::seed_local(int terms)
 void Step::note_start()
 {
   started = true;
-  const bool noisy = noise_of_forces(lmp, ownership).noise != Noise::NONE;
-  const double edge = noisy || !std::isfinite(edge_of_start) ? 0.0 : edge_of_start;
-  note_rates(edge);
+  note_rates(edge_of_start);
   warn_of_rates();
-  if (edge == 0.0) note_rates(edge_by_loads());    // an estimate for a blow-up
   if (tolerance) make_integrator();
 }
 
@@ -543,7 +502,6 @@ void Step::choose_next()
   make_integrator();
   time_step.change(next);
   adopt_length();
-  tolerance->order_output();
 }
 
 /* ----------------------------------------------------------------------
@@ -634,64 +592,61 @@ void Step::scale(Block &block, const int *ids, Scaled &scaled) const
 /// states: they will be read, and are determined.
 void Step::correct(double **f, bool states)
 {
-  const Way way = {tolerance && !bath.acts(), bath.acts() && bath.has_flow(), states};
   if (bath.acts()) {
-    if (tolerance) tolerance->note_prediction();
     bath.begin_correction(integrator->step());
-    constexpr int ROUNDS = 3;    // where velocities depend on the friction in another way
-    for (int n = 0; n < (scheme().momentum() ? 1 : ROUNDS) && bath.needs_sums(); ++n) {
-      for (const auto *list : {&bodies.points, &bodies.tops}) sum(*list, way);
+    if (bath.needs_sums()) {
+      for (const auto *list : {&bodies.points, &bodies.tops}) sum(*list);
       bath.find_friction(*integrator);
+      bath.conclude(integrator->step());
     }
-    if (bath.needs_sums()) bath.conclude(integrator->step());
   }
-  correct<true>(bodies.points, way, f);
-  correct<false>(bodies.tops, way, f);
+  correct<true>(bodies.points, f, states);
+  correct<false>(bodies.tops, f, states);
   if (bath.acts()) bath.end_correction(*integrator);
   if (bath.acts() && states) watch_all(f);    // otherwise their predictions were tested
-  if (bath.acts() && tolerance) tolerance->note_correction(*integrator, bath);
+  if (bath.acts() && tolerance) tolerance->note_errors(bath);
 }
 
-void Step::sum(const std::vector<int> &list, const Way &way)
+void Step::sum(const std::vector<int> &list)
 {
-  const size_t most = way.has_flow ? 1 : LANES;
   for (size_t first = 0; first < list.size();) {
-    Block block = block_of(list, first, most);
+    Block block = block_of(list, first, LANES);
     const int *const ids = &list[first];
-    const bool is_special = bodies.body_at(*ids).off || way.has_flow;
     Scaled scaled;
     scale(block, ids, scaled);
-    bath.add(*integrator, is_special ? bath.friction_of(*ids) : bath.friction(), block, ids);
+    bath.add(*integrator, block, ids);
     first += block.count;
   }
 }
 
-template <bool ARE_POINTS>
-void Step::correct(const std::vector<int> &list, const Way &way, double **f)
+template <bool ARE_POINTS> void Step::correct(const std::vector<int> &list, double **f, bool states)
 {
-  const bool coupled = bath.acts();
-  const size_t most = way.one_by_one || way.has_flow ? 1 : LANES;
+  using Last = RememberedLoads::Last;
+  const bool coupled = bath.acts(), has_flow = coupled && bath.has_flow();
+  const size_t most = has_flow ? 1 : LANES;    // a body in a flow has a friction of its own
   for (size_t first = 0; first < list.size();) {
     Block block = block_of(list, first, most);
     const int *const ids = &list[first];
     const Body &body = bodies.body_at(*ids);
-    const bool is_special = body.off || way.has_flow, masked = body.off && !bath.box.moves();
+    const bool is_special = body.off || has_flow, masked = body.off && !bath.box.moves();
     const BodyState before = masked ? *block.states[0] : BodyState();
     Scaled scaled;
     scale(block, ids, scaled);
     Friction own;
     if (is_special && coupled) own = bath.friction_of(*ids);
     const Friction &friction = is_special ? own : bath.friction();
-    if (way.one_by_one)
-      *block.last[0] = tolerance->correct(*integrator, *ids, *block.loads[0]);
-    else if (ARE_POINTS)
+    if (tolerance) tolerance->note_prediction(block);
+    if (ARE_POINTS)
       for (int k = 0; k < block.count; ++k)
         *block.last[k] =
             integrator->correct_center(*block.bodies[k], *block.loads[k], block.rows[k], friction);
     else
       integrator->correct(block, friction);
+    if (tolerance)
+      tolerance->note_correction(*integrator, block, ids,
+                                 coupled ? Last::KEPT : Last::INTEGRATED_AGAIN);
     first += block.count;
-    if (!way.states && !masked) continue;
+    if (!states && !masked) continue;
     if (!ARE_POINTS) integrator->find_states(block);
     for (int k = 0; ARE_POINTS && k < block.count; ++k)
       integrator->center_state(*block.bodies[k], block.rows[k], *block.states[k]);
@@ -747,7 +702,7 @@ void Step::accept(double **f)
 {
   const double h = integrator->step();
   if (tolerance) watch_all(f);    // otherwise correct() has done this
-  bath.note_step(h);
+  bath.box.note_step(h);
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
     watch_load(ibody, h, f);

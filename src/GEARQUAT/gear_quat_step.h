@@ -6,8 +6,8 @@
 /* The motion of the bodies of a fix.  Histories continue from run to run, or start:
 
      begin_run()        LAMMPS has evaluated the forces before the first step
-     start()            before a step: velocities from other fixes; before the first step of a run
-                        histories of all fixes gear/quat, which continue or start
+     start()            before the first step: histories of all fixes gear/quat, which continue
+                        or start
 
    One step of all bodies:
 
@@ -68,13 +68,28 @@ struct Fleet {
   bool moves(const Fix *fix, const Atom *atom, int i) const;
 };
 
+/// Before a run ends the run on all ranks with a reason: a time step of zero, r-RESPA with different
+/// steps, or atoms that another fix moves too.
+void refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Ownership &ownership);
+
+/// Writes the report to screen and log on rank 0, if args.report requests it: what is on, what is off
+/// and why, and which pairs of atoms cost time and move nothing.  In any case it warns of a pair
+/// style that acts between atoms of a body.  To be called in setup(), when neighbor lists are built
+/// and bodies have their ghosts.  Collective.
+void report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
+                  const Bodies &bodies, Ownership &ownership, const Sites &sites);
+
+/// Starts the histories of these fixes together, with steps of h.  Atoms are then as before.
+/// Collective.
+void start_together(LAMMPS *lmp, const std::vector<Step *> &fixes, double h);
+
 class Step : protected Pointers {
  public:
   /// bodies: empty, with histories of args.scheme.  tally(vflag, f): adds the virial of the
   /// constraint forces, computed from the forces f on atoms.
   using Tally = std::function<void(int, double **)>;
   Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
-       Ownership &ownership, Sites &sites, OtherFixes &others, Tally tally);
+       Ownership &ownership, Sites &sites, const OtherFixes &others, Tally tally);
 
   Phase phase = Phase::DEFINED;
   bool had_run() const { return phase >= Phase::SET_UP; }
@@ -95,9 +110,6 @@ class Step : protected Pointers {
   void begin_run();
   /// Warns of rates that have become too large for the step.
   void end_run();
-  /// Bodies, and then their histories, adopt velocities that other fixes have given to atoms, at the
-  /// end of that step if `end`.
-  void take_velocities(bigint of_step, bool end);
   /// Histories and integrator adopt LAMMPS' time step.
   void follow_length();
 
@@ -151,7 +163,7 @@ class Step : protected Pointers {
   const Fleet &fleet;
   Bodies &bodies;
   Sites &sites;
-  OtherFixes &others;
+  const OtherFixes &others;
   Scheme present;    ///< without keyword tolerance
   Tally tally;
   std::unique_ptr<Integrator> integrator;
@@ -206,7 +218,6 @@ class Step : protected Pointers {
   std::string warned;         ///< of this rate
   void note_rates(double edge);
   std::vector<Rate> all_rates(double h) const;
-  double edge_by_loads() const;
   void warn_of_rates();
 
   // limits
@@ -219,7 +230,7 @@ class Step : protected Pointers {
   void watch_all(double **f) const;
   [[noreturn]] void stop(int ibody, const BodyState &s, double h, double **f) const;
   std::string what_happened(int ibody, const BodyState &s, double h) const;
-  std::string remedy(int ibody, const BodyState &s, double h) const;
+  std::string remedy(int ibody, double h) const;
 
   // a step
 
@@ -230,17 +241,11 @@ class Step : protected Pointers {
     Load loads[LANES];
     double centers[LANES][3];
   };
-  /// How a list of bodies is corrected.
-  struct Way {
-    bool one_by_one;    ///< not side by side
-    bool has_flow;      ///< each has a friction of its own
-    bool states;        ///< are determined, and tested
-  };
   Block block_of(const std::vector<int> &list, size_t first, size_t most);
   void scale(Block &block, const int *ids, Scaled &scaled) const;
   void correct(double **f, bool states);
-  void sum(const std::vector<int> &list, const Way &way);
-  template <bool ARE_POINTS> void correct(const std::vector<int> &list, const Way &way, double **f);
+  void sum(const std::vector<int> &list);
+  template <bool ARE_POINTS> void correct(const std::vector<int> &list, double **f, bool states);
   bool has_to_place() const;
   /// After a step the fix reads its states itself.
   bool reads_states() const { return tolerance || bath.reads_states() || scheme().is_verlet(); }

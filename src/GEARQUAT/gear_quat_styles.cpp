@@ -22,7 +22,6 @@
 #include "utils.h"
 
 #include <algorithm>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -52,8 +51,9 @@ static constexpr Style PAIRS[] = {
 };
 
 static constexpr char GROUP[] = "give it a group without atoms of bodies";
-static constexpr char TEMP[] =
-    "use fix temp/csvr or temp/berendsen, which act on bodies, or fix langevin";
+static constexpr char TEMP[] = "use keyword temp or langevin, which act on bodies";
+static constexpr char MOMENTUM[] =
+    "use velocity zero linear and velocity zero angular between runs";
 static constexpr char BONDS[] =
     "take the bonds and angles of bodies out of it: bodies are rigid already";
 static constexpr char WALL[] = "use a wall that exerts a force, such as fix wall/harmonic";
@@ -84,7 +84,7 @@ static constexpr Style FIXES[] = {
     {"^nonaffine/displacement", NO_FORCE, "reads positions"},
     {"^INTEL", NO_FORCE, "adds up what threads have computed"},
     {"^GPU", NO_FORCE, "receives what a device has computed"},
-    {"^langevin", RANDOM | SINGLE | AT_INTEGRATION, "with gjf it also changes velocities",
+    {"^langevin", RANDOM | CHANGE | AT_INTEGRATION, "with gjf it also changes velocities",
      "leave out its keyword gjf"},
     {"^brownian", RANDOM, "random displacements, and it integrates itself"},
     {"^gle", RANDOM, "random changes of velocities with memory"},
@@ -106,47 +106,46 @@ static constexpr Style FIXES[] = {
 
     // doc/src/fix_gear_quat.rst has the same table of effects on atoms
 
-    {"^momentum", MOMENTUM, "subtracts velocities of a rigid motion, of the group or of chunks"},
-    {"^temp/rescale$", TEMPERATURE, "one factor for all"},
-    {"^temp/berendsen", TEMPERATURE, "one factor for all"},
-    {"^temp/csvr", TEMPERATURE, "one factor for all"},
-    {"^heat$", TEMPERATURE, "one factor, and one velocity subtracted"},
+    {"^momentum", CHANGE, "subtracts velocities of a rigid motion, of the group or of chunks",
+     MOMENTUM},
+    {"^temp/rescale", CHANGE, "scales velocities, or with eff those of electrons", TEMP},
+    {"^temp/berendsen", CHANGE, "scales velocities", TEMP},
+    {"^temp/csvr", CHANGE, "scales velocities", TEMP},
+    {"^heat$", CHANGE, "scales velocities, and subtracts one of them", GROUP},
     {"^wall/reflect", REFLECTION, "mirrors atoms beyond the wall", WALL},
     {"^wall/piston$", REFLECTION, "as wall/reflect", WALL},
-    {"^temp/csld", SINGLE, "mixes each velocity with a random one", TEMP},
-    {"^temp/rescale/eff", SINGLE, "scales radial velocities of electrons, too", TEMP},
-    {"^lambda_thermostat", SINGLE, "changes some velocities at a time", TEMP},
-    {"^ehex", SINGLE, "displaces atoms besides scaling velocities",
-     "use fix heat without a region, on groups of whole bodies"},
-    {"^thermal/conductivity", SINGLE, "exchanges the energies of two atoms", GROUP},
-    {"^viscosity", SINGLE, "exchanges momenta of two atoms", GROUP},
-    {"^oneway", SINGLE, "reverses velocities of atoms in a region", GROUP},
-    {"^shardlow", SINGLE, "random changes of velocities, pair by pair", GROUP},
-    {"^lb/momentum", SINGLE, "subtracts a velocity of the fluid, too", "use fix momentum"},
-    {"^lb/viscous", SINGLE, "exchanges momentum with the fluid in each step",
+    {"^temp/csld", CHANGE, "mixes each velocity with a random one", TEMP},
+    {"^lambda_thermostat", CHANGE, "changes some velocities at a time", TEMP},
+    {"^ehex", CHANGE, "displaces atoms besides scaling velocities", GROUP},
+    {"^thermal/conductivity", CHANGE, "exchanges the energies of two atoms", GROUP},
+    {"^viscosity", CHANGE, "exchanges momenta of two atoms", GROUP},
+    {"^oneway", CHANGE, "reverses velocities of atoms in a region", GROUP},
+    {"^shardlow", CHANGE, "random changes of velocities, pair by pair", GROUP},
+    {"^lb/momentum", CHANGE, "subtracts a velocity of the fluid, too", MOMENTUM},
+    {"^lb/viscous", CHANGE, "exchanges momentum with the fluid in each step",
      "use fix rigid for them"},
-    {"^wall/flow", SINGLE, "gives a new random velocity to atoms that pass a plane", GROUP},
-    {"^smd/setvel", SINGLE, "sets velocities", GROUP},
-    {"^sph/stationary", SINGLE, "advances densities, as this fix does", GROUP},
-    {"^tmd$", SINGLE, "moves atoms towards a target", "use fix spring or fix spring/self"},
-    {"^recenter", SINGLE | ANY, "shifts positions, also of another group",
-     "use fix momentum, and subtract the center of mass in the analysis"},
-    {"^shake", SINGLE | CONSTRAINED, "subtracts the degrees of freedom as well", BONDS},
-    {"^rattle", SINGLE | CONSTRAINED, "as shake, and corrects velocities", BONDS},
-    {"^ilves", SINGLE | CONSTRAINED, "as shake", BONDS},
-    {"^atom/swap", SINGLE, "exchanges types of two atoms", GROUP},
-    {"^mol/swap", SINGLE, "exchanges types of atoms of a molecule", GROUP},
-    {"^neighbor/swap", SINGLE, "exchanges types of two atoms", GROUP},
-    {"^sgcmc", SINGLE, "changes types of atoms", GROUP},
+    {"^wall/flow", CHANGE, "gives a new random velocity to atoms that pass a plane", GROUP},
+    {"^smd/setvel", CHANGE, "sets velocities", GROUP},
+    {"^sph/stationary", CHANGE, "advances densities, as this fix does", GROUP},
+    {"^tmd$", CHANGE, "moves atoms towards a target", "use fix spring or fix spring/self"},
+    {"^recenter", CHANGE | ANY, "shifts positions, also of another group",
+     "subtract the center of mass in the analysis"},
+    {"^shake", CHANGE | CONSTRAINED, "subtracts the degrees of freedom as well", BONDS},
+    {"^rattle", CHANGE | CONSTRAINED, "as shake, and corrects velocities", BONDS},
+    {"^ilves", CHANGE | CONSTRAINED, "as shake", BONDS},
+    {"^atom/swap", CHANGE, "exchanges types of two atoms", GROUP},
+    {"^mol/swap", CHANGE, "exchanges types of atoms of a molecule", GROUP},
+    {"^neighbor/swap", CHANGE, "exchanges types of two atoms", GROUP},
+    {"^sgcmc", CHANGE, "changes types of atoms", GROUP},
     {"^gcmc", EXCHANGE, "with mol and rigid it inserts and removes whole bodies",
      "to exchange whole bodies use its keywords mol and rigid, without MC moves, and keyword mol "
      "of fix gear/quat"},
-    {"^charge/regulation", SINGLE, "inserts and removes ions", GROUP},
-    {"^gemc", SINGLE | ANY, "exchanges atoms between two boxes and changes these", ONE},
-    {"^hmc", SINGLE | ANY, "puts back atoms and knows rigid/small alone",
+    {"^charge/regulation", CHANGE, "inserts and removes ions", GROUP},
+    {"^gemc", CHANGE | ANY, "exchanges atoms between two boxes and changes these", ONE},
+    {"^hmc", CHANGE | ANY, "puts back atoms and knows rigid/small alone",
      "use fix rigid/small with fix hmc"},
-    {"^pimd", SINGLE, "integrates beads of a ring polymer", GROUP},
-    {"^ipi", SINGLE | ANY, "takes positions and the box from a server", ONE},
+    {"^pimd", CHANGE, "integrates beads of a ring polymer", GROUP},
+    {"^ipi", CHANGE | ANY, "takes positions and the box from a server", ONE},
 };
 
 /* ----------------------------------------------------------------------
@@ -214,22 +213,6 @@ std::string GearQuat::reader_of_predicted_velocities(LAMMPS *lmp, const Fix *own
   return "";
 }
 
-bool GearQuat::makes_forces(LAMMPS *lmp, const Fix *owner)
-{
-  constexpr int AROUND_FORCES = PRE_FORCE | PRE_REVERSE | POST_FORCE | FINAL_INTEGRATE |
-      PRE_FORCE_RESPA | POST_FORCE_RESPA | FINAL_INTEGRATE_RESPA;
-  const Force *force = lmp->force;
-  if (exerts_forces(force->pair, force->pair_style) ||
-      exerts_forces(force->bond, force->bond_style) ||
-      exerts_forces(force->angle, force->angle_style) ||
-      exerts_forces(force->dihedral, force->dihedral_style) ||
-      exerts_forces(force->improper, force->improper_style) || force->kspace)
-    return true;
-  for (auto *other : lmp->modify->get_fix_list())
-    if (other != owner && (lmp->modify->get_fix_mask(other) & AROUND_FORCES)) return true;
-  return false;
-}
-
 /// Called in every step: Modify::get_fix_list() would make a list.
 bool GearQuat::reads_at_end(LAMMPS *lmp, const Fix *owner)
 {
@@ -245,31 +228,19 @@ bool GearQuat::reads_at_end(LAMMPS *lmp, const Fix *owner)
   return false;
 }
 
-bool GearQuat::exerts_forces(const void *style, const char *name)
-{
-  return style && std::strcmp(name, "zero") != 0;
-}
-
 /* ----------------------------------------------------------------------
    other fixes that act on atoms of bodies
 ------------------------------------------------------------------------- */
 
-static constexpr double RIGID = 1.0e-6;    // of the velocity of a site, for a motion to be rigid
-
-OtherFixes::OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Ownership &ownership,
-                       Sites &sites, const Arguments &args) :
+OtherFixes::OtherFixes(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
+                       const Ownership &ownership, const Sites &sites, const Arguments &args) :
     Pointers(lmp),
     fix(fix), bodies(bodies), ownership(ownership), sites(sites), args(args)
 {
 }
 
-/* ----------------------------------------------------------------------
-   before a run
-------------------------------------------------------------------------- */
-
 void OtherFixes::init()
 {
-  taken.clear();
   watched.clear();
   for (auto *other : modify->get_fix_list()) {
     const Style *row = known(Fact::ON_ATOMS, other);
@@ -282,22 +253,14 @@ void OtherFixes::init()
                  "leave out one of the two, or give the other one a group without atoms of bodies",
                  args.thermostat.keyword(), name_of(other));
     if (!row) continue;
-    if (row->is(Fact::TEMPERATURE | Fact::MOMENTUM)) {
-      taken.push_back(other);
-      if (atom && args.isokinetic != Isokinetic::NONE && row->is(Fact::TEMPERATURE))
-        error->all(FLERR,
-                   "Fix gear/quat isokinetic keeps the kinetic energy, which {} changes; "
-                   "leave out one of the two",
-                   name_of(other));
-    } else if (row->is(Fact::REFLECTION) || (row->is(Fact::EXCHANGE) && !args.mol.empty())) {
+    if (row->is(Fact::REFLECTION) || (row->is(Fact::EXCHANGE) && !args.mol.empty()))
       watched.push_back(other);
-    } else {
+    else
       refuse(other, *row, atom);
-    }
   }
 }
 
-/// Ends the run if a fix changes single atoms of bodies.
+/// Ends the run if a fix changes atoms of bodies.
 void OtherFixes::refuse(Fix *other, const Style &row, tagint atom) const
 {
   if (row.is(Fact::ANY))
@@ -308,8 +271,8 @@ void OtherFixes::refuse(Fix *other, const Style &row, tagint atom) const
        !(modify->get_fix_mask(other) & FixConst::INITIAL_INTEGRATE)))
     return;
   error->all(FLERR,
-             "Fix gear/quat: {} changes single atoms of bodies, such as atom {}, and "
-             "bodies do not follow; {}",
+             "Fix gear/quat: {} changes atoms of bodies, such as atom {}, and bodies do not "
+             "follow; {}",
              name_of(other), atom, row.instead);
 }
 
@@ -359,84 +322,16 @@ tagint GearQuat::shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix 
   return over_ranks(MPI_MAX, shared, lmp->world);
 }
 
-/* ----------------------------------------------------------------------
-   velocities that bodies adopt
-------------------------------------------------------------------------- */
-
-std::vector<int> OtherFixes::take_velocities(bigint step, bool end)
-{
-  std::vector<int> changed;
-  std::vector<const Fix *> acted;
-  for (const auto *one : taken)
-    if (one->nevery > 0 && step % one->nevery == 0) acted.push_back(one);
-  if (acted.empty()) return changed;
-  const auto before = bodies.snapshot();    // with the loads of the last step
-  if (!sites.gather_impulses()) return changed;
-
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const RigidBody &rigid = bodies.rigid_of(ibody);
-    const Load &impulse = bodies.load_of(ibody);
-    BodyState &state = bodies.change_state(ibody);
-    if (dot3(impulse.force, impulse.force) + dot3(impulse.torque_space, impulse.torque_space) ==
-        0.0)
-      continue;
-    double twist[3];
-    torque_along_axes(state.q, dot4(state.q, state.q), impulse, twist);
-    for (int k = 0; k < 3; ++k) {
-      state.velocity[k] += impulse.force[k] / rigid.mass;
-      if (rigid.inertia[k] > 0.0) state.omega_body[k] += twist[k] / rigid.inertia[k];
-    }
-    changed.push_back(ibody);
-  }
-  bodies.put_back_loads(before);    // accelerations of bodies follow from them
-  ownership.spread_states();
-
-  tagint torn = 0;
-  for (const Site &site : sites) {
-    const Sites::Expected v = sites.expected_velocity(site);
-    double off[3];
-    for (int k = 0; k < 3; ++k)
-      off[k] = k < domain->dimension ? atom->v[site.atom][k] - v.value[k] : 0.0;
-    if (!(length(off) <= RIGID * v.size)) torn = std::max(torn, bodies.body_at(site.body).id);
-  }
-  torn = over_ranks(MPI_MAX, torn, world);
-  // a temperature with a bias scales each atom by itself; whole bodies take the rigid part
-  if (!torn || std::all_of(acted.begin(), acted.end(), [this](const Fix *one) {
-        return known(Fact::TEMPERATURE, one) && !ownership.count_atoms(one->groupbit).divided;
-      })) {
-    sites.place_velocities();
-    return changed;
-  }
-  if (end)
-    error->all(FLERR,
-               "Fix gear/quat: the velocities that {} gave to atoms of body {} in step {} do not "
-               "form a rigid motion; whole bodies have to be in the group, without a region or a "
-               "bias that divides them",
-               names(acted), torn, step);
-  bodies.put_back_states(before);
-  ownership.spread_states();
-  return {};
-}
-
-/* ----------------------------------------------------------------------
-   changes that bodies do not follow
-------------------------------------------------------------------------- */
-
 void OtherFixes::watch_places() const
 {
   if (watched.empty()) return;
+  std::vector<std::string> names;
+  for (const auto *one : watched) names.push_back(name_of(one));
   for (const Site &site : sites)
     if (!sites.is_there(site))
       error->one(FLERR,
                  "Fix gear/quat: {} has moved atom {} of body {} in step {}, and bodies do not "
                  "follow; {}",
-                 names(watched), atom->tag[site.atom], bodies.body_at(site.body).id,
+                 utils::join_words(names, ", "), atom->tag[site.atom], bodies.body_at(site.body).id,
                  update->ntimestep, known(Fact::ON_ATOMS, watched.front())->instead);
-}
-
-std::string OtherFixes::names(const std::vector<const Fix *> &fixes) const
-{
-  std::vector<std::string> words;
-  for (const auto *one : fixes) words.push_back(name_of(one));
-  return utils::join_words(words, ", ");
 }

@@ -6,10 +6,9 @@
 /* Other styles by their names: a row with all facts of each, their reasons in LAMMPS' sources, and
    what to use instead.
 
-   Other fixes that change velocities, positions or masses of the atoms of bodies: depending on the
-   effect, bodies adopt the change, the run ends when the change occurs, or the run does not begin.
-   The fix calls init() before every run; take_velocities() before a step, with the velocities left
-   by the previous step; watch_places() after the forces, with the predicted positions. */
+   Other fixes that change velocities, positions or masses of the atoms of bodies: the run does not
+   begin, or it ends when the change occurs.  The fix calls init() before every run, and
+   watch_places() after the forces, with the predicted positions. */
 
 #ifndef LMP_GEAR_QUAT_STYLES_H
 #define LMP_GEAR_QUAT_STYLES_H
@@ -47,18 +46,15 @@ namespace Fact {
     TIME_STEP = 1 << 8,         ///< changes the time step
     CARRIES_BODIES = 1 << 9,    ///< calls deform() of rigid fixes where it remaps atoms
     // effects of fixes on velocities, positions, types or number of atoms of their groups
-    MOMENTUM = 1 << 10,    ///< subtracts a rigid motion from velocities
-    TEMPERATURE =
-        1 << 11,    ///< scales velocities, uniformly unless a bias or a region divides them
-    REFLECTION = 1 << 12,    ///< mirrors single atoms that reach a position
-    EXCHANGE = 1 << 13,      ///< inserts and removes whole molecules, which may be bodies
-    SINGLE = 1 << 14,        ///< changes atoms one by one
-    // atoms of a SINGLE change
-    ANY = 1 << 15,               ///< any atoms, for any group
-    CONSTRAINED = 1 << 16,       ///< those of its group whose degrees of freedom it subtracts
-    AT_INTEGRATION = 1 << 17,    ///< its group, if a keyword makes it act in initial_integrate()
+    REFLECTION = 1 << 10,    ///< mirrors single atoms that reach a position
+    EXCHANGE = 1 << 11,      ///< inserts and removes whole molecules, which may be bodies
+    CHANGE = 1 << 12,        ///< changes atoms, which bodies do not follow
+    // atoms of a CHANGE
+    ANY = 1 << 13,               ///< any atoms, for any group
+    CONSTRAINED = 1 << 14,       ///< those of its group whose degrees of freedom it subtracts
+    AT_INTEGRATION = 1 << 15,    ///< its group, if a keyword makes it act in initial_integrate()
 
-    ON_ATOMS = MOMENTUM | TEMPERATURE | REFLECTION | EXCHANGE | SINGLE
+    ON_ATOMS = REFLECTION | EXCHANGE | CHANGE
   };
 }
 
@@ -83,15 +79,11 @@ bool adds_up(const Compute *compute);
 std::string name_of(const Fix *fix);
 /// The other fixes that may exert forces on atoms, in the order in which LAMMPS calls them.
 std::vector<const Fix *> fixes_with_forces(LAMMPS *lmp, const Fix *owner);
-/// True if there may be forces: styles other than "zero", or fixes called around the forces.
-bool makes_forces(LAMMPS *lmp, const Fix *owner);
 /// The name of a style that reads velocities between prediction and correction, or empty.  owner:
 /// the calling fix.
 std::string reader_of_predicted_velocities(LAMMPS *lmp, const Fix *owner);
 /// True if an output or another fix may read data at the end of the present step.
 bool reads_at_end(LAMMPS *lmp, const Fix *owner);
-/// False for no style and for style zero, of pairs, bonds, angles, dihedrals or impropers.
-bool exerts_forces(const void *style, const char *name);
 
 /* ---------------------------------------------------------------------- */
 
@@ -113,36 +105,26 @@ NoisyForces noise_of_forces(LAMMPS *lmp, const Ownership &ownership);
 
 class OtherFixes : protected Pointers {
  public:
-  OtherFixes(LAMMPS *lmp, const Fix *fix, Bodies &bodies, Ownership &ownership, Sites &sites,
-             const Arguments &args);
+  OtherFixes(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, const Ownership &ownership,
+             const Sites &sites, const Arguments &args);
 
   /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
   void init();
   /// Rank 0 warns of forces that the number of values in the command cannot follow.  Collective.
   void warn_of_noise() const;
-  /// True if some fix may change velocities and bodies adopt the change.
-  bool any_taken() const { return !taken.empty(); }
-
-  /// Returns bodies on this rank whose velocities other fixes have changed at the end of that step;
-  /// their states have the new velocities, on all ranks.  A change that is not a rigid motion ends
-  /// the run if `end`, and is otherwise ignored.  Collective.
-  std::vector<int> take_velocities(bigint step, bool end);
-
   /// Ends the run if a fix that may move single atoms has moved one of a body; when the forces have
   /// been evaluated.  Local.
   void watch_places() const;
 
  private:
   const Fix *fix;
-  Bodies &bodies;
-  Ownership &ownership;
-  Sites &sites;
+  const Bodies &bodies;
+  const Ownership &ownership;
+  const Sites &sites;
   const Arguments &args;
-  std::vector<const Fix *> taken;      ///< bodies adopt velocities from these
   std::vector<const Fix *> watched;    ///< these may move single atoms
 
   void refuse(Fix *other, const Style &row, tagint atom) const;
-  std::string names(const std::vector<const Fix *> &fixes) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

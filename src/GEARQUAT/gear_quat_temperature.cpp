@@ -289,13 +289,6 @@ void Temperature::sum_present()
    messages and restart
 ------------------------------------------------------------------------- */
 
-double Temperature::common_energy() const
-{
-  double sum = 0.0;
-  for (int k = 0; k < 3; ++k) sum += mass[k] * common[k] * common[k];
-  return 0.5 * sum / line.kt;
-}
-
 std::string Temperature::description() const
 {
   if (!has_translation()) return "";

@@ -108,8 +108,6 @@ class Temperature : protected Pointers {
   // after count()
 
   bool has_translation() const { return count_of[0] + count_of[1] + count_of[2] > 0.0; }
-  /// Kinetic energy of the common motion, in kT.
-  double common_energy() const;
   /// For messages: whether the total momentum counts, and why; empty if it has no directions.
   std::string description() const;
   /// Rank 0 prints the message if it differs from the last one.
@@ -148,7 +146,7 @@ class Temperature : protected Pointers {
 };
 
 /// Keyword isokinetic: the sums over all bodies, of owned bodies on this rank and then of all ranks,
-/// that give the multipliers of Gauss's principle (gear_quat_gauss.h), and the kinetic energy that
+/// that give the multipliers of Gauss's principle (gear_quat_friction.h), and the kinetic energy that
 /// stays constant.
 class IsokineticConstraint : protected Pointers {
  public:

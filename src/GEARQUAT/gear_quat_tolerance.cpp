@@ -87,7 +87,7 @@ Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const St
    start
 ------------------------------------------------------------------------- */
 
-void Tolerance::begin(double permitted, const Fix *first)
+void Tolerance::begin(double permitted)
 {
   record = Record();
   growing = Growth::START;
@@ -100,7 +100,7 @@ void Tolerance::begin(double permitted, const Fix *first)
   size = std::fabs(even(std::copysign(size, given), time_step.beginning()));
   if (size == std::fabs(given)) return;
   for (const auto *other : modify->get_fix_list()) {    // in the order in which they begin a step
-    if (other == first) break;
+    if (other == fix) break;
     if (!other->time_integrate) continue;
     if (size < std::fabs(given) && comm->me == 0)
       error->warning(FLERR,
@@ -225,50 +225,35 @@ void Tolerance::begin_run()
                    why);
 }
 
-Correction Tolerance::correct(const Integrator &integrator, int ibody, const Load &load)
-{
-  StepErrors one;
-  const Body &body = bodies.body_at(ibody);
-  const Correction correction =
-      remembered.correct(control, integrator, body.rigid, body.reach(), load, bodies.axes(ibody),
-                         bodies.history(ibody), one);
-  include(integrator, ibody, load, one);
-  return correction;
-}
-
-void Tolerance::include(const Integrator &integrator, int ibody, const Load &load, StepErrors one)
-{
-  const Body &body = bodies.body_at(ibody);
-  one.error *= control.counted(integrator, body.rigid, body.reach(), load, bodies.history(ibody));
-  include(one);
-}
-
 void Tolerance::include(StepErrors one)
 {
   if (!std::isfinite(one.error)) one.error = std::numeric_limits<double>::infinity();
   errors.include(one);
 }
 
-void Tolerance::note_prediction()
+void Tolerance::note_prediction(const Block &block)
 {
-  predicted.resize(bodies.nmoved());
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    predicted[ibody] = RememberedLoads::accelerations(bodies.history(ibody));
+  for (int k = 0; k < block.count; ++k)
+    predicted[k] = RememberedLoads::accelerations(block.rows[k]);
 }
 
-void Tolerance::note_correction(const Integrator &integrator, const Bath &bath)
+void Tolerance::note_correction(const Integrator &integrator, const Block &block, const int *ids,
+                                RememberedLoads::Last last)
 {
-  for (const auto *list : {&bodies.points, &bodies.tops})
-    for (const int ibody : *list) {
-      const Body &body = bodies.body_at(ibody);
-      const Load load = bodies.acting(ibody);
-      RememberedLoads::Row change;
-      include(integrator, ibody, load,
-              remembered.errors(control, integrator, body.rigid, body.reach(), load,
-                                bodies.axes(ibody), predicted[ibody], bodies.history(ibody),
-                                change));
-    }
-  for (const double error : bath.errors(control.energy, update->dt, integrator.values()))
+  for (int k = 0; k < block.count; ++k) {
+    const RigidBody &rigid = *block.bodies[k];
+    const double reach = bodies.body_at(ids[k]).reach();
+    const Load load = bodies.acting(ids[k]);
+    StepErrors one = remembered.finish(control, integrator, rigid, reach, load, bodies.axes(ids[k]),
+                                       predicted[k], block.rows[k], last);
+    one.error *= control.counted(integrator, rigid, reach, load, block.rows[k]);
+    include(one);
+  }
+}
+
+void Tolerance::note_errors(const Bath &bath)
+{
+  for (const double error : bath.errors(control.energy, update->dt, present.values()))
     include({error});
 }
 
@@ -392,27 +377,6 @@ double Tolerance::even(double step, double now) const
   for (int n = 0; n < 4 && now + last != next; ++n)
     last = std::nextafter(last, now + last < next ? HUGE_VAL : 0.0);
   return last;
-}
-
-void Tolerance::announce_output()
-{
-  const bool by_time =
-      every_time > 0.0 && output->thermo_every == 0 && output->var_thermo == nullptr;
-  announced = by_time ? update->ntimestep + 1 : -1;
-  if (by_time) modify->addstep_compute_all(announced);
-}
-
-void Tolerance::order_output()
-{
-  const bigint now = update->ntimestep;
-  const auto is_even = [this](double time, double step) {
-    const double off = time - std::round(time / every_time) * every_time;
-    return std::fabs(off) < ROUNDING_OF_TIME * std::fabs(step);
-  };
-  if (announced == now && is_even(update->atime, update->dt))
-    output->next = output->next_thermo = now;
-  announced = -1;
-  if (every_time > 0.0 && is_even(update->atime + update->dt, update->dt)) announce_output();
 }
 
 void Tolerance::evaluate(int vflag)

@@ -9,10 +9,10 @@
      begin()        histories start
      begin_step(), prepare()
      predict        LAMMPS: neighbors, forces
-     correct()      of each body, or note_prediction() and note_correction() around a bath
+     correct        with note_prediction() and note_correction() of bodies
      accepts()      error too large: [undo, shorten(), prepare(), predict, evaluate()], correct
                     again, all during final_integrate()
-     choose(), TimeStep::change(), order_output()
+     choose(), TimeStep::change()
 
    After prepare(), shorten() and choose() a new integrator is needed.
 
@@ -99,20 +99,19 @@ class Tolerance : protected Pointers {
   /// An integrator with the coefficients of the last prepare().
   Integrator integrator() const { return {present, time_step.length(), remembered.coefficients()}; }
   /// Before histories are made of the present loads: shortens the first step to dtmax, the motion
-  /// allowed, `permitted`, and the step whose error would be the tolerance.  first: the first fix
-  /// gear/quat, which starts the histories of all before it begins the step.  Collective.
-  void begin(double permitted, const Fix *first);
+  /// allowed, `permitted`, and the step whose error would be the tolerance.  Collective.
+  void begin(double permitted);
 
   /// Begins a step, with the histories of the last step.  Collective.
   void begin_step();
   /// Weights for a step of the present length.
   void prepare() { remembered.prepare(time_step.length()); }
-  /// Corrects one body.
-  Correction correct(const Integrator &integrator, int ibody, const Load &load);
-  // The same around a correction of all bodies together: of the predicted, then of the corrected
-  // histories.
-  void note_prediction();
-  void note_correction(const Integrator &integrator, const Bath &bath);
+  /// Before a block is corrected, and after it.
+  void note_prediction(const Block &block);
+  void note_correction(const Integrator &integrator, const Block &block, const int *ids,
+                       RememberedLoads::Last last);
+  /// After all bodies are corrected.
+  void note_errors(const Bath &bath);
   /// After all bodies are corrected: false if the step has failed and must be repeated.
   /// Collective.
   bool accepts();
@@ -124,12 +123,6 @@ class Tolerance : protected Pointers {
   /// Chooses loads and length of the next step, and returns the length.  After the call histories
   /// have the new number of loads.  permitted: upper limit of the length.  Collective.
   double choose(double permitted);
-  /// Requests energies for a possible output in the next step, which LAMMPS does not expect: its
-  /// thermo output is scheduled by step numbers only.
-  void announce_output();
-  /// With thermo 0, prints thermo output at the multiples of every_time, if the present step ends
-  /// at one of them.  To be called after TimeStep::change().
-  void order_output();
   /// Before a run: the timestep command sets only the first step of histories, which keep their
   /// length.
   void keep_step();
@@ -146,14 +139,13 @@ class Tolerance : protected Pointers {
   double every_time;
   RememberedLoads remembered;
   Growth growing = Growth::START;
-  std::unique_ptr<Forces> forces;                 ///< null if no step of the run can be repeated
-  std::vector<RememberedLoads::Row> predicted;    ///< accelerations of bodies corrected together
-  StepErrors errors;           ///< of the bodies corrected so far; of all, once judged
-  double speed = 0.0;          ///< upper limit of the speeds of all sites
-  int tries = 0;               ///< failed tries of the present step
-  StepControl::Next failed;    ///< the next try
-  bool fresh = false;          ///< bodies were inserted in this step, set by the test of the error
-  bigint announced = -1;       ///< the last step of announce_output()
+  std::unique_ptr<Forces> forces;           ///< null if no step of the run can be repeated
+  RememberedLoads::Row predicted[LANES];    ///< accelerations of a block
+  StepErrors errors;                        ///< of the bodies corrected so far; of all, once judged
+  double speed = 0.0;                       ///< upper limit of the speeds of all sites
+  int tries = 0;                            ///< failed tries of the present step
+  StepControl::Next failed;                 ///< the next try
+  bool fresh = false;    ///< bodies were inserted in this step, set by the test of the error
   Record record = {};
 
   void change_loads(int loads);
@@ -164,7 +156,6 @@ class Tolerance : protected Pointers {
   /// In the units of the user.
   double unit_of_error() const { return control.energy ? force->mvv2e : 1.0; }
   void include(StepErrors one);
-  void include(const Integrator &integrator, int ibody, const Load &load, StepErrors one);
   double first_step() const;
   void begin_run();
 };

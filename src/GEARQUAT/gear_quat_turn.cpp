@@ -3,9 +3,9 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-#include "gear_quat_turn.h"
+#include "gear_quat_momentum.h"
 
-#include "gear_quat_lanes.h"
+#include "gear_quat_math.h"
 
 #include <algorithm>
 #include <cmath>

@@ -25,7 +25,7 @@ import numpy as np
 from lammps_gearquat.trials.worker import ENDED
 
 from . import scene, styles, thermostat
-from .styles import BOX, CHANCE, COUNT, FORCE, INTEGRATES, MOVES, PASSIVE, RIGID_ONLY, TAKEN, Try
+from .styles import BOX, CHANCE, COUNT, FORCE, INTEGRATES, MOVES, PASSIVE, RIGID_ONLY, Try
 
 STEPS, DT = 20, 0.005
 #: styles that are tried on 4 ranks in every run of the tests: with data per atom, or global sums
@@ -237,7 +237,7 @@ class Campaign:
             return []
         # a rigid fix includes in its first forces only fixes that are defined before it
         rigid = SceneRun(n, "after" if a_try.behind else "before").rigid()
-        if a_try.kind in (PASSIVE, FORCE, TAKEN):
+        if a_try.kind in (PASSIVE, FORCE):
             return [SceneRun(n, divide=4), rigid._replace(divide=4), rigid._replace(divide=8)]
         return [SceneRun(n), rigid] if a_try.kind == COUNT else []
 

@@ -17,7 +17,6 @@ FORCE = "force"  # adds forces that depend on the present state only
 CHANCE = "chance"  # draws random numbers in each step
 COUNT = "count"  # acts only in certain steps, so it is compared with fix rigid at the same step
 MOVES = "moves"  # changes velocities, positions or masses of bodies' atoms without informing the fix
-TAKEN = "taken over"  # changes velocities, which bodies adopt
 RIGID_ONLY = "rigid only"  # recognizes a rigid fix by the beginning of its style
 INTEGRATES = "integrates"  # a second fix that integrates time
 BOX = "box"  # changes the box
@@ -73,13 +72,10 @@ def force_or_none(args, none, **words):
     return force(args, **words) + passive(none)
 
 
-def moves(args="", free=COUNT, kind=MOVES, pieces=0, **words):
+def moves(args="", free=COUNT, pieces=0, **words):
     """On all atoms, and (as another kind) only on atoms outside of bodies."""
-    both = _one(kind, args, pieces=pieces, **words)
+    both = _one(MOVES, args, pieces=pieces, **words)
     return both + (_one(free, args, "free", **words) if free else ())
-
-
-taken = partial(moves, kind=TAKEN)
 
 
 ENERGY = "energy yes virial yes"
@@ -194,17 +190,17 @@ FIXES = {
         free=None,
     ),
     "ffl": moves("1.0 1.0 1.0 1234", free=None),
-    "heat": taken("<5> 0.1", pieces=5),
-    "momentum": taken("<5> linear 1 1 1", pieces=5),
-    "momentum/chunk": (Try(TAKEN, "<5> cc linear 1 1 1", before=CHUNKS, pieces=5),),
+    "heat": moves("<5> 0.1", pieces=5),
+    "momentum": moves("<5> linear 1 1 1", pieces=5),
+    "momentum/chunk": (Try(MOVES, "<5> cc linear 1 1 1", before=CHUNKS, pieces=5),),
     "oneway": moves("1 whole -x", before=WHOLE),
     "rattle": moves("0.0001 20 0 b 1", free=None),
     "recenter": moves("INIT INIT INIT", free=None),
     "shake": moves("0.0001 20 0 b 1", free=None),
-    "temp/berendsen": taken("1 1 0.5", pieces=1),
+    "temp/berendsen": moves("1 1 0.5", pieces=1),
     "temp/csld": moves("1 1 0.5 1234", free=CHANCE),
-    "temp/csvr": (Try(CHANCE, "1 1 0.5 1234"), Try(CHANCE, "1 1 0.5 1234", "free")),
-    "temp/rescale": taken("<5> 1 1 0.01 1.0", pieces=5),
+    "temp/csvr": moves("1 1 0.5 1234", free=CHANCE),
+    "temp/rescale": moves("<5> 1 1 0.01 1.0", pieces=5),
     "thermal/conductivity": moves("5 z 4"),
     "viscosity": moves("5 x z 4"),
     "wall/flow": moves("x 1.0 1.0 1234 2 2.0 5.0", free=None),

@@ -105,7 +105,7 @@ ARGUMENTS = {
     "molecule langevin 1 1 1 4711 temp 1 1 1": "keyword langevin cannot be used with temp",
     "molecule langevin 1 1 1 4711 values 5": "keyword langevin cannot be used with values",
     "molecule langevin 1 1 1 4711 tolerance 1e-6": "keyword langevin cannot be used with tolerance",
-    "molecule langevin 1 1 1 4711 formulation first": "keyword langevin requires formulation momentum or second",
+    "molecule langevin 1 1 1 4711 formulation first": "keyword langevin requires formulation momentum: the friction acts",
     "molecule langevin 1 1 1 4711 iso 1 1 1 ptemp 1": "keyword ptemp cannot be used with langevin",
     **{f"molecule langevin 1 1 1 {seed}": "seed" for seed in ("0", "-3", "1.5", "1e12")},
     "single mol some": "keyword mol requires bodystyle molecule",

@@ -31,9 +31,9 @@ TRIED = {
         "run 1",
         "",
     ),
-    "temper": ("", "molecule", "fix bath all temp/csvr 1.0 1.0 0.1 4711\nrun 1", ""),    # what it needs
+    "temper": ("", "molecule", "fix bath all langevin 1.0 1.0 0.1 4711\nrun 1", ""),    # what it needs
     "fix poems": ("", "file bodies.dat", "", "Unknown fix gear/quat bodystyle: file"),
-    "infile": "test_infile_out.py",
+    "infile": "test_physics.py",
     "reinit": ("", "molecule reinit no", "run 1\nrun 1", ""),
     "a body with a single atom": ("set atom 1 mol 3", "molecule", "run 1", ""),
     "mol": "test_coming_and_going.py",

@@ -196,18 +196,6 @@ def test_chain_in_a_flow(simulate):
         assert column.mean() == pytest.approx(T, rel=0.005)
 
 
-@pytest.mark.parametrize("style", ["temp/rescale 5 1.5 1.5 0.01 1.0", "temp/berendsen 1.5 1.5 0.02"])
-def test_thermostats_with_a_bias(simulate, style):
-    """They scale the motion of atoms relative to the flow, and bodies take the rigid part."""
-    deck = DECK.replace("langevin {langevin}", "").replace("f_move[9] f_move[10] f_move[11]", "c_own")
-    after = f"compute own all temp/deform\nfix bath all {style}\nfix_modify bath temp own"
-    result, means = simulate(
-        deck=deck, after=after, before=FLOW, pair="lj/cut 2.0", coeff="1.0 1.0", dt=0.004, averaged="c_own", warm=1500
-    )
-    assert means[:, 0].mean() == pytest.approx(1.5, rel=0.02)
-    assert "WARNING" not in result.log
-
-
 @pytest.mark.parametrize("tau", [0.0001, 0.1])
 def test_pressure_keeps_the_conserved_quantity(simulate, tau):
     """To second order at any damping: the accelerations of bodies and box follow the random velocities."""

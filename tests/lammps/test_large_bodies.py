@@ -92,14 +92,13 @@ WAYS = {
         fix="temp 100.0 120.0 0.1 thermostat separate", after="fix_modify move energy no"
     ),
     "masks": dict(fix="force 1 off on on torque 1* on off on"),
-    "cooled": dict(after="fix cool all temp/berendsen 100 10 0.1"),
     "tolerance": dict(fix="tolerance 1e-9 dtmax 0.004"),
     "wide tolerance": dict(fix="tolerance 1e-9 dtmax 0.004", before="comm_modify cutoff 9.8"),
     # the last, since it has two runs
     "timestep": dict(run="run 100\ntimestep 0.0015\nrun 100"),
 }
 RANKS = {
-    1: ["plain", "first", "temp", "total", "separate", "thermostat", "masks", "cooled", "timestep"],
+    1: ["plain", "first", "temp", "total", "separate", "thermostat", "masks", "timestep"],
     2: ["tiled", "separate", "thermostat"],
     4: list(WAYS),
 }
@@ -159,7 +158,7 @@ def test_the_scene_tells(ends):
     assert ghosts(ends[4, "plain", "log"]) < 0.5 * ghosts(ends[4, "wide", "log"])
     assert int(re.findall(r"Neighbor list builds = (\d+)", ends[4, "plain", "log"])[-1]) > 10
     assert difference(ends[1, "plain"], ends[1, "first"]) < 1e-6  # two methods for the same motion
-    for way in ("total", "separate", "thermostat", "masks", "cooled", "timestep"):
+    for way in ("total", "separate", "thermostat", "masks", "timestep"):
         assert difference(ends[1, "plain"], ends[1, way]) > 1e-5
 
 

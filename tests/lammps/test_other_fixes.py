@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 from support.running import ROOT
-from support.scenes import last_frame, one_after_the_other, placed, two_molecules, water, water_data
+from support.scenes import one_after_the_other, placed, two_molecules, water, water_data
 
 SOURCE = ROOT / "src/GEARQUAT/gear_quat_styles.cpp"
 MANUAL = ROOT / "doc/src/fix_gear_quat.rst"
@@ -26,7 +26,7 @@ def molecules(lmp, after="", fix="gear/quat molecule report no", dt=0.5, steps=2
 def rows_of_the_code():
     """Pattern -> effect of such a fix."""
     rows = re.findall(r'\{"(\^[^"]+)",\s+([A-Z_| ]+),', SOURCE.read_text())
-    effects = {"MOMENTUM", "TEMPERATURE", "REFLECTION", "EXCHANGE", "SINGLE"}
+    effects = {"REFLECTION", "EXCHANGE", "CHANGE"}
     return {pattern: effect for pattern, facts in rows for effect in effects & set(facts.split(" | "))}
 
 
@@ -41,8 +41,7 @@ def rows_of_the_manual():
 
 
 def test_manual_and_code_have_the_same_table():
-    words = {"MOMENTUM": "taken over", "TEMPERATURE": "taken over", "REFLECTION": "ends the run"}
-    words |= {"SINGLE": "refused", "EXCHANGE": "needs its keywords"}
+    words = {"REFLECTION": "ends the run", "CHANGE": "refused", "EXCHANGE": "needs its keywords"}
     code, manual = rows_of_the_code(), rows_of_the_manual()
     assert len(code) > 25
     for style, text in manual.items():
@@ -60,106 +59,15 @@ def test_patterns_are_the_beginnings_of_names():
     assert [row for row in rows if not row.startswith("^")] == []
 
 
-# --- adopted -------------------------------------------------------------------------------------
-TAKEN = {
-    "rescale": "temp/rescale 1 300 300 1 1.0",
-    "rescale every 7": "temp/rescale 7 300 300 1 1.0",
-    "berendsen": "temp/berendsen 300 300 50",
-    "csvr": "temp/csvr 300 300 50 4711",
-}
-
-
-def energies(table):
-    return {key: np.array(value) for key, value in table.items()}
-
-
-@pytest.mark.parametrize("formulation", ["first", "second compensate yes", "second"])
-def test_thermostats_by_scaling_reach_the_bodies(lmp_wheel, formulation):
-    """Bodies have the temperature shown by thermo, and the heat of the thermostat equals their loss."""
-    fix = f"gear/quat molecule report no formulation {formulation}"
-    decks = [
-        molecules(lmp_wheel, f"fix bath all {words}", fix, dt=0.25, thermo=40, steps=800) for words in TAKEN.values()
-    ]
-    result = lmp_wheel.succeed(one_after_the_other(decks))
-    for table in map(energies, result.thermo):
-        bodies = table["f_move[1]"] + table["f_move[2]"]
-        late = slice(len(bodies) // 2, None)
-        # except in the last scaling
-        assert bodies[late] == pytest.approx(table["KinEng"][late], rel=0.02)
-        assert 200 < table["Temp"][late].mean() < 420  # without: 1200
-        taken = table["TotEng"][0] - table["TotEng"][-1]
-        assert taken > 100
-        assert abs(table["Econserve"] - table["Econserve"][0]).max() < 0.005 * taken
-
-
-MOMENTUM = """
-velocity all set 0.001 0.0 -0.002 sum yes
-fix still all momentum 10 linear 1 1 0 angular
-"""
-SHOW_MOMENTUM = """
-variable px equal vcm(all,x)
-variable pz equal vcm(all,z)
-thermo_style custom step v_px v_pz f_move[1][4]
-run 0
-"""
-
-
-def test_momentum_reaches_the_bodies(lmp_wheel):
-    """This is true also on several ranks; bodies match their atoms after the change."""
-    ends = []
-    for ranks in (1, 4):
-        deck = molecules(lmp_wheel, MOMENTUM, steps=35, run="run 35\n" + SHOW_MOMENTUM)
-        end = lmp_wheel.succeed(deck, ranks=ranks).thermo[-1]
-        assert abs(end["v_px"][0]) < 1e-15 and end["v_pz"][0] == pytest.approx(-0.002, abs=1e-4)
-        ends.append(last_frame(lmp_wheel.folder / "poses.dump"))
-    assert ends[1] == pytest.approx(ends[0], abs=1e-9)
-
-
-def test_heat_is_what_it_says(lmp_wheel):
-    """A change of the heat by one part in a thousand is detected."""
-    with_heat, plain = (
-        lmp_wheel.succeed(molecules(lmp_wheel, after, dt=0.25, steps=400)).thermo[0]["TotEng"]
-        for after in ("fix in all heat 1 0.1", "")
-    )
-    gained = with_heat[-1] - plain[-1]
-    assert gained == pytest.approx(0.1 * 0.25 * 400, rel=1e-3)
-
-
-def test_heat_from_molecules_to_others(lmp_wheel):
-    """The way out that the refusal of fix ehex names: two groups, the energy of all is constant."""
-    groups = "group hot molecule 1:5\ngroup cold molecule 20:24\n"
-    flow = "fix in hot heat 1 0.05\nfix out cold heat 1 -0.05\ncompute t cold temp\n"
-    run = "thermo_style custom step etotal c_t\nrun 160"
-    deck = molecules(lmp_wheel, groups + flow, dt=0.25, steps=160, run=run)
-    end, plain = (lmp_wheel.succeed(text).thermo[0] for text in (deck, deck.replace("0.05", "0.0001")))
-    assert end["TotEng"][-1] == pytest.approx(plain["TotEng"][-1], abs=0.01)
-    assert end["c_t"][-1] < plain["c_t"][-1] - 30
-
-
-def test_the_last_scaling_of_a_run_is_not_lost_or_taken_twice(lmp_wheel):
-    """run n + run n = run 2n, with a restart or pre no between."""
-    bath = "fix bath all temp/berendsen 300 300 50"
-    ends = []
-    for run in ("run 40", "run 20\nrun 20", "run 20\nrun 20 pre no post no"):
-        result = lmp_wheel.succeed(molecules(lmp_wheel, bath, steps=40, run=run))
-        assert "anew" not in result.output and "WARNING: Fix" not in result.output
-        ends.append(last_frame(lmp_wheel.folder / "poses.dump"))
-    for end in ends[1:]:
-        assert end == pytest.approx(ends[0], abs=1e-10)
-
-
-@pytest.mark.parametrize("ranks", [1, 4])
-def test_a_scaling_that_tears_bodies_ends_the_run(lmp_wheel, ranks):
-    group = "group oxygen type 1\nfix bath oxygen temp/rescale 1 300 300 1 1.0"
-    message = "velocities that fix bath (temp/rescale) gave to atoms of body 27 in step 1 do not"
-    result = lmp_wheel.refuse(molecules(lmp_wheel, group, steps=20), message, ranks=ranks)
-    assert len(set(result.errors)) == 1
-
-
 # --- refused -------------------------------------------------------------------------------------
 REFUSED = {
-    "temp/csld 300 300 100 4711": "use fix temp/csvr or temp/berendsen",
-    "ehex 1 0.1": "use fix heat without a region, on groups of whole bodies",
+    "momentum 10 linear 1 1 0 angular": "use velocity zero linear and velocity zero angular between runs",
+    "temp/rescale 1 300 300 1 1.0": "use keyword temp or langevin, which act on bodies",
+    "temp/berendsen 300 300 50": "use keyword temp or langevin, which act on bodies",
+    "temp/csvr 300 300 50 4711": "use keyword temp or langevin, which act on bodies",
+    "temp/csld 300 300 100 4711": "use keyword temp or langevin, which act on bodies",
+    "heat 1 0.1": "give it a group without atoms of bodies",
+    "ehex 1 0.1": "give it a group without atoms of bodies",
     "thermal/conductivity 10 x 20": "give it a group without atoms of bodies",
     "viscosity 10 x z 20": "give it a group without atoms of bodies",
     "oneway 1 half +x": "give it a group without atoms of bodies",
@@ -217,32 +125,6 @@ def test_constraints_on_atoms_of_bodies(lmp_tree):
     )
     lmp_tree.succeed(beside)
     lmp_tree.refuse(on_them, "take the bonds and angles of bodies out of it")
-
-
-def test_isokinetic_and_a_thermostat(lmp_wheel):
-    fix = "gear/quat molecule report no formulation first isokinetic total"
-    deck = molecules(lmp_wheel, "fix bath all temp/csvr 300 300 100 4711", fix)
-    message = "isokinetic keeps the kinetic energy, which fix bath (temp/csvr) changes"
-    lmp_wheel.refuse(deck, message)
-
-
-@pytest.mark.parametrize("mode", ["total", "separate"])
-def test_isokinetic_and_momentum(lmp_wheel, mode):
-    """A change of 1e-9 has an effect of the same size: the damping by the multipliers continues.
-
-    The step is short, because accelerations are set again, and errors of the start, where these forces
-    vary discontinuously, are still present in step 20: they decay more slowly with tuned coefficients.
-    """
-    fix = f"gear/quat molecule report no formulation first isokinetic {mode}"
-    ends, sums = [], []
-    for still in ("", "\nfix still all momentum 20 linear 1 1 1"):
-        after = f"velocity all zero linear\nvelocity all set 1e-9 0 0 sum yes{still}"
-        deck = molecules(lmp_wheel, after, fix, dt=0.03125, steps=80, thermo=10)
-        table = energies(lmp_wheel.succeed(deck).thermo[0])
-        sums.append(table["TotEng"] + table["f_move[9]"])
-        ends.append(last_frame(lmp_wheel.folder / "poses.dump"))
-    assert abs(sums[1] - sums[0]).max() < 1e-8 * abs(sums[0]).max()
-    assert ends[1] == pytest.approx(ends[0], abs=1e-7)
 
 
 # --- watched --------------------------------------------------------------

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from support.constant_pressure import REPULSIVE, dipoles_deck, ends, frame, pressed, trimers
-from support.scenes import FORMULATIONS, largest_change
+from support.scenes import largest_change
 
 #: for 8 trimers between z = 0 and 4; these forces have energies, and act only along z
 SLIT = """
@@ -60,12 +60,10 @@ def deck(name, dt=0.005, steps=100, words="", **settings):
     return text.replace("fix move all", "fix move guest") if "frozen" in name else text
 
 
-@pytest.mark.parametrize("name, formulation", [(name, FORMULATIONS[k % 3]) for k, name in enumerate(SCENES)])
-def test_the_energy_is_constant_to_the_order(lmp_tree, name, formulation):
+@pytest.mark.parametrize("name", SCENES)
+def test_the_energy_is_constant_to_the_order(lmp_tree, name):
     """With 6 values; all these forces have energies."""
-    words = f"formulation {formulation} values 6" + (
-        " corrector gear" if formulation == "momentum" else ""
-    )
+    words = "values 6 corrector gear"
     time = 3.2 if "frozen" in name else 0.4
     result, _ = ends(
         lmp_tree, [deck(name, dt, round(time / dt), words) for dt in (0.008, 0.004)]
@@ -226,8 +224,6 @@ OTHERS = (
     "viscous 0.1",
     "gravity 1.0 vector 1 0 0",
     "langevin 1 1 1 4711",
-    "momentum 5 angular",
-    "temp/berendsen 1 1 1",
 )
 
 

@@ -50,7 +50,7 @@ def continued(deck, file):
 @pytest.mark.parametrize("processors, same", [("1 1 *", True), ("* * *", False)])
 def test_the_bits_need_the_same_grid_of_ranks(lmp_tree, processors, same):
     """Without numbers LAMMPS divides the box of the file along its longest edge, which has changed."""
-    words, settings = "formulation second " + MODES["NPT"], dict(processors=processors)
+    words, settings = MODES["NPT"], dict(processors=processors)
     decks = [pressed(words, run=f"run 50 {SPAN}\nwrite_restart half\nrun 50 {SPAN}", **settings)]
     decks.append(continued(pressed(words, run=f"run 50 {SPAN}", **settings), "half"))
     result, (whole, again) = ends(lmp_tree, decks, 2)
@@ -69,10 +69,11 @@ def test_molecules_many_periods_off(lmp_tree, mode):
     for far in periods:
         trimers(lmp_tree.folder / f"data.{far}", n=3, images=(far, -far * 4 // 5, far * 3 // 5))
     words = {"NVE": ""} | MODES
-    decks = [pressed(f"formulation {f} {words[mode]}", **more) for f in FORMULATIONS
+    formulations = FORMULATIONS if mode == "NVE" else ["momentum"]
+    decks = [pressed(f"formulation {f} {words[mode]}", **more) for f in formulations
              for more in ({}, *(dict(box=f"read_data data.{far}") for far in periods))]
     _, frames = ends(lmp_tree, decks)
-    for here, *others in (frames[:4], frames[4:]):
+    for here, *others in (frames[n : n + 4] for n in range(0, len(frames), 4)):
         for far, off in zip(periods, others):
             flags = off[:, 6:9] - here[:, 6:9]
             assert np.abs(flags).max() == far and len(np.unique(flags)) > 2
@@ -93,14 +94,12 @@ def test_ways_to_run_the_same_steps(lmp_tree, mode):
         "every": f'run 100 {SPAN} every 20 "print x"',
         "upto": f"run 40 upto {SPAN}\nrun 0\nrun 100 upto {SPAN}",
     }
-    for formulation in FORMULATIONS:
-        decks = [pressed(f"formulation {formulation} {MODES[mode]}", run=text) for text in parts.values()]
-        result, found = ends(lmp_tree, decks)
-        assert "another target" not in result.log
-        for name, rows in zip(parts, found):
-            assert apart(rows, found[0]) < 1e-12, name
-        values = np.concatenate([table["Econserve"] for table in result.thermo])
-        assert np.ptp(values) < 1e-5
+    result, found = ends(lmp_tree, [pressed(MODES[mode], run=text) for text in parts.values()])
+    assert "another target" not in result.log
+    for name, rows in zip(parts, found):
+        assert apart(rows, found[0]) < 1e-12, name
+    values = np.concatenate([table["Econserve"] for table in result.thermo])
+    assert np.ptp(values) < 1e-5
 
 
 def test_a_run_of_zero_steps_changes_no_bit(lmp_tree):
@@ -172,7 +171,7 @@ def test_the_fix_again_after_its_compute_was_deleted(lmp_tree):
 
 
 def test_forces_that_reach_far(lmp_tree):
-    """Water with PPPM and a tail correction: order of the conserved energy in each formulation."""
+    """Water with PPPM and a tail correction: order of the conserved energy."""
     from support.constant_pressure import scaled_water
 
     scaled_water(lmp_tree.folder / "data.water", (1.0, 1.0, 1.0))
@@ -195,9 +194,8 @@ thermo_modify norm no format float %.17g
 thermo 1
 run {steps}
 """
-    decks = [deck.format(dt=dt, steps=round(40 / dt), words=words)
-             for words in ("values 5", "formulation first values 6") for dt in (4.0, 2.0)]
+    decks = [deck.format(dt=dt, steps=round(40 / dt), words="values 5") for dt in (4.0, 2.0)]
     result = lmp_tree.succeed(one_after_the_other(decks))
     changes = [largest_change(table) for table in result.thermo]
-    assert np.log2(changes[0] / changes[1]) > 3.4 and np.log2(changes[2] / changes[3]) > 4.0, changes
+    assert np.log2(changes[0] / changes[1]) > 3.4, changes
     assert largest_change(result.thermo[0], "Volume") > 1.0

@@ -263,11 +263,3 @@ def test_a_fix_that_is_defined_anew_beside_another(lmp_tree, ranks):
     noisy = "fix noise all langevin 0.1 0.1 10.0 4711\n" + again
     result, _ = two_fixes(lmp_tree, 10, 0.02, few, few, after=noisy, ranks=ranks)
     assert result.stdout.count(FALLBACK) == 4
-
-
-def test_tolerance_beside_another_fix(lmp_tree):
-    """The first step is shortened before either fix has begun it."""
-    result, _ = two_fixes(lmp_tree, 10, 0.5, "corrector gear values 8", "tolerance 1e-9")
-    assert "first step" in result.stdout and result.output.count("WARNING") == 1
-    assert "nothing controls the errors of the bodies of fix" in result.output
-    assert "start with known forces only (order 2), because fix move (gear/quat) moves atoms" in result.stdout

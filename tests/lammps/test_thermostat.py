@@ -11,8 +11,8 @@ from scipy import stats
 from support.scenes import MOLECULES, largest_change
 from support.constant_temperature import COLUMNS, COMMON, TEMP, cluster, run
 
-def test_the_columns_belong_together(lmp_tree, formulation):
-    deck = cluster(f"formulation {formulation} temp 0.5 0.7 0.3 thermostat separate tchain 2", 0.016)
+def test_the_columns_belong_together(lmp_tree):
+    deck = cluster("temp 0.5 0.7 0.3 thermostat separate tchain 2", 0.016)
     result = run(lmp_tree, [deck])
     table = {name: np.array(values) for name, values in result.thermo[0].items()}
     assert "of 9 degrees of freedom of translation, without those of the total" in result.log
@@ -108,10 +108,10 @@ def test_degrees_of_freedom(lmp_tree, name):
     assert largest_change(table, "TotEng") > 1e-2
 
 
-def test_what_is_off_has_no_friction(lmp_tree, formulation):
+def test_what_is_off_has_no_friction(lmp_tree):
     """Momenta and angular momenta in masked directions are constant."""
     masks = "force 1 off off off torque 1 off off off"
-    deck = cluster(f"formulation {formulation} {masks} {TEMP}", dumped="", time=1.6)
+    deck = cluster(f"{masks} {TEMP}", dumped="", time=1.6)
     deck = deck.replace(COLUMNS, COLUMNS + " f_move[1][4] f_move[1][23] f_move[2][4]")
     (table,) = run(lmp_tree, [deck]).thermo
     assert largest_change(table, "f_move[1][4]") < 1e-13
@@ -123,33 +123,33 @@ def test_what_is_off_has_no_friction(lmp_tree, formulation):
 # --- targets ------------------------------------------------------------------------------------
 
 
-def test_another_target_starts_anew(lmp_tree, formulation):
-    words = f"formulation {formulation} {TEMP}"
+def test_another_target_starts_anew(lmp_tree):
+    words = TEMP
     commands = f"run 100\nunfix move\nfix move all gear/quat molecule {words}\nrun 100"
     again = cluster(words, run="run 100\nrun 100\nrun 100 start 0 stop 300")
-    step = cluster(f"formulation {formulation} temp 0.5 0.9 0.3", run="run 100\nrun 100")
+    step = cluster("temp 0.5 0.9 0.3", run="run 100\nrun 100")
     results = run(lmp_tree, [again, step])
     assert results.log.count("the thermostat has another target") == 1
     for table in results.thermo:
-        assert largest_change(table, "Econserve") < (1e-6 if formulation == "first" else 1e-7)
+        assert largest_change(table, "Econserve") < 1e-7
     last, then = results.thermo[3], results.thermo[4]
     assert (last["f_move[12]"][-1], then["f_move[12]"][0]) == (pytest.approx(0.9), pytest.approx(0.5))
     # the energy removed by the chains continues
     assert then["f_move[9]"][0] != 0.0 and then["f_move[13]"][0] == last["f_move[13]"][-1]
 
 
-def test_another_step(lmp_tree, formulation):
+def test_another_step(lmp_tree):
     commands = "run 100\ntimestep 0.003\nrun 100\ntimestep 0.004\nrun 100"
-    tables = run(lmp_tree, [cluster(f"formulation {formulation} {TEMP}", run=commands)]).thermo
+    tables = run(lmp_tree, [cluster(TEMP, run=commands)]).thermo
     values = np.concatenate([table["Econserve"] for table in tables])
-    assert np.abs(values - values[0]).max() < (1e-6 if formulation == "first" else 1e-7)
+    assert np.abs(values - values[0]).max() < 1e-7
 
 
 # --- other fixes, ranks, restart -----------------------------------------------------------------
 
 
-def test_several_fixes(lmp_tree, formulation):
-    deck = cluster(f"formulation {formulation} {TEMP}")
+def test_several_fixes(lmp_tree):
+    deck = cluster(TEMP)
     deck = deck.replace("fix move all", "group some molecule 1 2\ngroup others subtract all some\nfix move some")
     deck = deck.replace("timestep", f"fix too others gear/quat molecule {TEMP} thermostat separate\ntimestep")
     result = run(lmp_tree, [deck])

@@ -59,9 +59,9 @@ def test_many_molecules_reach_a_target(lmp_tree, gas, kind, target):
 
 
 @pytest.mark.parametrize("length", [1, 10])
-def test_any_length_and_few_steps_of_damping(lmp_tree, gas, formulation, length):
+def test_any_length_and_few_steps_of_damping(lmp_tree, gas, length):
     decks = [
-        gas(f"formulation {formulation} temp {target} {target} {damp} tchain {length}")
+        gas(f"temp {target} {target} {damp} tchain {length}")
         for damp in (0.1, 100.0)
         for target in (0.3, 3.0)
     ]

@@ -86,7 +86,6 @@ def test_forces_that_jump(lmp_tree):
 
 
 UNFOLLOWED = {
-    "fix other others gear/quat molecule corrector gear": "fix other (gear/quat) moves atoms",
     "fix other others nve": "moves atoms",
     "fix other others langevin 1.0 1.0 1.0 4711": "acts on forces in a way that cannot be followed",
 }
@@ -95,9 +94,7 @@ UNFOLLOWED = {
 @pytest.mark.parametrize("command", UNFOLLOWED)
 def test_where_steps_are_not_repeated_the_log_says_so(lmp_tree, command):
     before = f"create_atoms 2 single 0 -9 9\ngroup others type 2\ngroup ones type 1\n{command}"
-    deck = scene("1e-8", before=before).replace("fix move all", "fix move ones")
-    deck = deck.replace("create_atoms 2 single 0 -9 9", "create_atoms 2 single 0 -9 9\nset type 2 mol 9")
-    result = lmp_tree.succeed(deck)
+    result = lmp_tree.succeed(scene("1e-8", before=before).replace("fix move all", "fix move ones"))
     assert result.output.count("no step is repeated, because") == 1
     assert UNFOLLOWED[command] in result.output
     (run,) = tables(result)
@@ -121,35 +118,27 @@ def test_steps_end_at_times_of_a_dump(lmp_tree):
 
 @pytest.mark.parametrize("interval", [7.3, 0.1])
 def test_steps_end_at_multiples_of_a_time(lmp_tree, interval):
-    """With thermo 0 there is output only at these times; fix halt, first or last, ends the run there."""
-    words = f"every/time {interval}"
-    often = scene("1e-9", until=7.3, words=words)
-    rare = often.replace("thermo 1\n", "thermo 0\n")
+    """Fix halt, first or last, ends the run at one of them."""
+    often = scene("1e-9", until=7.3, words=f"every/time {interval}")
     halt, run = UNTIL.format(7.3).split("run")
-    first = rare.replace(halt, "\n").replace("fix move all", f"{halt}fix move all")
-    assert len({often, rare, first}) == 3
-    plain = scene("1e-9", until=7.3)
-    all_steps, at_times, halted_first, free = tables(
-        lmp_tree.succeed(one_after_the_other([often, rare, first, plain]))
+    first = often.replace(halt, "\n").replace("fix move all", f"{halt}fix move all")
+    assert first != often
+    all_steps, halted_first, free = tables(
+        lmp_tree.succeed(one_after_the_other([often, first, scene("1e-9", until=7.3)]))
     )
-    count = round(7.3 / interval)
-    expected = np.arange(count + 1) * interval
-    assert at_times["Time"][:-1].tolist() == expected[:-1].tolist()
-    assert at_times["Time"][-1] == pytest.approx(7.3, abs=1e-14)
+    expected = np.arange(round(7.3 / interval)) * interval
+    assert set(expected.tolist()) <= set(all_steps["Time"].tolist())
+    assert all_steps["Time"][-1] == pytest.approx(7.3, abs=1e-14)
     assert {key: a.tolist() for key, a in halted_first.items()} == {
-        key: a.tolist() for key, a in at_times.items()
+        key: a.tolist() for key, a in all_steps.items()
     }
-    shown = np.isin(all_steps["Step"], at_times["Step"])
-    for column in ("Time", "TotEng", "KinEng", "PotEng", LAST):
-        assert all_steps[column][shown].tolist() == at_times[column].tolist(), column
-    assert all_steps["Time"][-1] == at_times["Time"][-1] < free["Time"][-1]
+    assert all_steps["Time"][-1] < free["Time"][-1]
     tries = [len(run["Step"]) + run[REPEATED][-1] for run in (free, all_steps)]
     assert tries[1] < 1.15 * tries[0]  # steps without this condition are up to 0.1 long
 
 
 def test_a_first_step_ends_at_a_multiple(lmp_tree):
-    deck = scene("1e-4", words="every/time 0.003", until=0.03).replace("thermo 1\n", "thermo 0\n")
-    (run,) = tables(lmp_tree.succeed(deck))
+    (run,) = tables(lmp_tree.succeed(scene("1e-4", words="every/time 0.003", until=0.03)))
     assert run["Step"].tolist() == list(range(11))
     assert run["Time"] == pytest.approx(0.003 * np.arange(11), rel=1e-14)
 

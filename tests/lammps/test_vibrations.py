@@ -27,21 +27,12 @@ fix move all gear/quat molecule {words}
 {run}
 """
 COLD = "temp 0.3 0.3 0.5"
-BEGINS = re.compile(r"Fix gear/quat move: \d values, for vibrations of (\S+) radians")
 TOLD = re.compile(r"the angle of vibrations is (\S+) in a step, and the method follows (\S+); use a time step of (\S+) or shorter")
 
 
 def condense(lmp, dt, run, words=COLD, ranks=1):
     (lmp.folder / "trimer.mol").write_text(TRIMER)
     return lmp.succeed(GAS.format(dt=dt, words=words, run=run), ranks=ranks)
-
-
-def test_faster_vibrations_are_warned_of(lmp_wheel):
-    """The end of a run warns once, with a step that is short enough."""
-    result = condense(lmp_wheel, 0.018, "run 3000\nrun 1000")
-    ((edge, limit, step),) = TOLD.findall(result.words)
-    assert float(BEGINS.search(result.stdout)[1]) < 0.2 and float(edge) > float(limit) == 0.4
-    assert not TOLD.search(condense(lmp_wheel, step, "run 3000").words)
 
 
 @pytest.mark.parametrize(

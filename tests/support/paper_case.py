@@ -24,15 +24,3 @@ class Case1:
 
 def end(result, run=-1):
     return np.array([result.thermo[run][column][-1] for column in COLUMNS])
-
-
-#: words of a line of an infile
-WORDS = 20
-
-
-def bodies_in(path):
-    """Lines of the file as numbers, (bodies, 20); the first line other than a comment is the count."""
-    lines = [line for line in path.read_text().splitlines() if line.partition("#")[0].strip()]
-    table = np.array([[float(word) for word in line.split()] for line in lines[1:]])
-    assert table.shape == (int(lines[0]), WORDS)
-    return table

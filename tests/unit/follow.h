@@ -90,9 +90,11 @@ struct Follower {
     for (size_t k = 0; k < bodies.size(); ++k) {
       const One &one = bodies[k];
       double *rows = bodies[k].rows.data();
-      StepErrors errors;
-      remembered.correct(control, integrator, one.body, one.reach, met[k],
-                         integrator.axes_of(rows).data(), rows, errors);
+      const auto before = RememberedLoads::accelerations(rows);
+      const auto axes = integrator.axes_of(rows);
+      integrator.correct(one.body, met[k], rows);
+      StepErrors errors = remembered.finish(control, integrator, one.body, one.reach, met[k],
+                                            axes.data(), before, rows);
       errors.error *= control.counted(integrator, one.body, one.reach, met[k], rows);
       all.include(errors);
     }

@@ -1,6 +1,6 @@
-/* gear_quat_coefficients.h: every entry as an exact fraction, derived again, and compared with the printed tables. */
+/* gear_quat_history.h: every entry as an exact fraction, derived again, and compared with the printed tables. */
 
-#include "gear_quat_coefficients.h"
+#include "gear_quat_history.h"
 #include "oracles/gear_coefficients.h"
 
 #include <gtest/gtest.h>

@@ -34,10 +34,8 @@ double remains(const Scheme &scheme, double friction)
 
 TEST(Friction, AFreeBodyComesToRest)
 {
-  for (const Formulation formulation : FORMULATIONS)
-    for (int values = formulation == FIRST ? 4 : 5; values <= (formulation == FIRST ? 8 : 12);
-         ++values) {
-      const Scheme scheme = scheme_of(formulation, values, 2);
-      EXPECT_LT(remains(scheme, 0.1), 1.0e-3) << scheme;
-    }
+  for (int values = 5; values <= SECOND_MOST; ++values) {
+    const Scheme scheme = scheme_of(MOMENTUM, values);
+    EXPECT_LT(remains(scheme, 0.1), 1.0e-3) << scheme;
+  }
 }

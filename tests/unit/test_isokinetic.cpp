@@ -2,7 +2,7 @@
    in tests/lammps/test_equations.py and test_isokinetic.py. */
 
 #include "drive.h"
-#include "gear_quat_gauss.h"
+#include "gear_quat_friction.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 /* Keyword langevin: random numbers, and the random step of a body. */
 
-#include "gear_quat_langevin.h"
+#include "gear_quat_friction.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 /* Formulation momentum: rows of the angular momentum, and quaternions that turn with it. */
 
-#include "gear_quat_gauss.h"
+#include "gear_quat_friction.h"
 #include "scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-/* gear_quat_coefficients.h and gear_quat_stability.h: the order conditions, compared with the characteristic
+/* gear_quat_history.h and gear_quat_stability.h: the order conditions, compared with the characteristic
    equation in exact fractions; every tuned set, for any numbers; and its response to random
    forces. */
 
