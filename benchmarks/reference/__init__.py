@@ -39,7 +39,7 @@ Files: quaternion.py; equations.py (bodies, state, rates, energies); fields.py (
 lammps_forces.py (LAMMPS' own forces); paper.py (the paper's body and starts); integrators.py
 (Gragg-Bulirsch-Stoer); free_top.py (exact); solvers.py (errors; solvers that
 control their steps); multistep.py (symmetric, order 8); splittings.py (exact free rotation between kicks);
-stability.py (stable steps of the methods of the fix for a linear equation); central.py and deflection.py (collisions
+stability.py (stable steps of the methods of the fix for a linear equation); deflection.py (collisions
 of two atoms).
 """
 

@@ -1,19 +1,63 @@
-"""Deflection by a central potential for many energies and impact parameters at once: a substitute for flights of two
-atoms.
+"""Classical scattering by a central potential by quadrature: a substitute for flights of two atoms.
 
-Formulas and quadrature are as in central.py; here the turning point is searched for.  Bodies of energy E orbit at
-r_o.  For b^2 above B(r_o), the turning point is outside of r_o, or else inside of r_i, the inner radius with W(r_i) =
-E.  Here W(r) = U + r U' / 2, which equals E where B has an extremum.
+Lengths in sigma, energies in epsilon.  With the distance of closest approach r_m for the energy E of relative motion (J. O.
+Hirschfelder, C. F. Curtiss and R. B. Bird, Molecular Theory of Gases and Liquids, Wiley 1954, Eqs. 1.5-18, 8.2-2, 8.2-3):
+
+    b^2      = r_m^2 (1 - U(r_m) / E) = B(r_m)
+    chi      = pi - 2 b / r_m  integral_0^1 dx / sqrt(1 - (b x / r_m)^2 - U(r_m / x) / E)
+
+Bodies of energy E orbit at r_o.  For b^2 above B(r_o), the turning point is outside of r_o, or else inside of r_i, the inner
+radius with W(r_i) = E.  Here W(r) = U + r U' / 2, which equals E where B has an extremum.
 """
 
+from functools import lru_cache
+
 import numpy as np
-
-from .central import double_exponential
-
 #: radii at which W is tabulated, and bisections for the turning point
 RADII, BISECTIONS = 200_001, 60
 #: nodes of the quadrature, on each side of r_o
 NODES = 61
+
+
+class LennardJones:
+    """4 (r^-12 - r^-6)."""
+
+    def energy(self, r):
+        """Potential energy at distances r."""
+        y = 1.0 / (r * r)
+        y = y * y * y
+        return 4.0 * y * (y - 1.0)
+
+    def slope(self, r):
+        """Its derivative."""
+        y = r**-6.0
+        return 24.0 * y * (1.0 - 2.0 * y) / r
+
+
+class TwelveFour:
+    """3^1.5 / 2 (r^-12 - r^-4), of an ion and an atom that it polarizes: the well is at 3^(1/8) and has the depth 1."""
+
+    DEPTH = 1.5 * np.sqrt(3.0)
+
+    def energy(self, r):
+        """Potential energy at distances r."""
+        y = 1.0 / (r * r)
+        y = y * y
+        return self.DEPTH * y * (y * y - 1.0)
+
+    def slope(self, r):
+        """Its derivative."""
+        y = r**-4.0
+        return self.DEPTH * 4.0 * y * (1.0 - 3.0 * y * y) / r
+
+
+@lru_cache
+def double_exponential(count):
+    """Nodes, their distances from 1, and weights of the tanh-sinh rule on [0, 1] (Takahasi and Mori 1974)."""
+    s = np.linspace(-3.4, 3.4, count)
+    inner = np.pi * np.sinh(s)
+    weight = (s[1] - s[0]) * np.pi * np.cosh(s) / (2.0 + 2.0 * np.cosh(inner))
+    return 1.0 / (1.0 + np.exp(-inner)), 1.0 / (1.0 + np.exp(inner)), weight
 
 
 class Deflection:
@@ -63,7 +107,7 @@ class Deflection:
         return np.pi - 2.0 * b / turning * total
 
     def _part(self, energy, b, turning, low, high):
-        """Integral (n,) over x from ``low`` to ``high`` (n, 1); see central.py."""
+        """Integral (n,) over x from ``low`` to ``high`` (n, 1)."""
         t, rest, weight = double_exponential(NODES)
         width, turning, energy = high - low, turning[:, None], energy[:, None]
         x = np.maximum(np.where(t < 0.5, low + width * t, high - width * rest), 1e-300)

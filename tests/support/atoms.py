@@ -5,8 +5,9 @@ from functools import cached_property
 
 import numpy as np
 
-from benchmarks.reference.central import CollisionIntegrals, LennardJones, TwelveFour
-from benchmarks.reference.deflection import Deflection
+from scipy.special import gammaincinv
+
+from benchmarks.reference.deflection import Deflection, LennardJones, TwelveFour
 from lammps_gearquat.scatter.flights import Facts
 from lammps_gearquat.scatter.integrals import quantities
 from lammps_gearquat.scatter.sampling import Plan
@@ -31,10 +32,17 @@ class Atoms:
     def deflection(self):
         return Deflection(self.potential)
 
-    @cached_property
-    def exact(self):
-        """Function (l, s, temperature) of the reduced collision integrals, without a largest impact parameter."""
-        return CollisionIntegrals(self.potential, self.deflection.limit)
+    def cross_section(self, order, energy):
+        """Integral (n,) of (1 - cos^order chi) 2 pi b db at energies (n,)."""
+        b = np.linspace(0.0, 1.0, 4001)[1:] ** 2 * self.largest
+        angles = np.array([self.deflection.angles(np.full(len(b), one), b) for one in energy])
+        return np.trapezoid((1.0 - np.cos(angles) ** order) * 2.0 * np.pi * b, b)
+
+    def exact(self, order, temperature):
+        """Omega(order, order), relative to spheres of diameter 1: the mean of cross sections over energies."""
+        x = gammaincinv(order + 2, (np.arange(200) + 0.5) / 200)
+        sphere = np.pi * (1.0 - (1.0 + (-1.0) ** order) / (2.0 + 2.0 * order))
+        return self.cross_section(order, x * temperature).mean() / sphere
 
     def columns(self, b, energy):
         """Columns of flights, numbered from 0, with impact parameters and energies (n,)."""

@@ -17,10 +17,6 @@ def _quantity(value, unit, digits=3):
     return rounded(value, digits) + (f" {unit}" if unit else "")
 
 
-def _count(number, word):
-    return f"{number} {word}" + "s" * (number != 1)
-
-
 #: seconds of earlier runs
 BEFORE = "The runs before it were executed once, and all trials start from their end ({:.1f} s of the budget)."
 
