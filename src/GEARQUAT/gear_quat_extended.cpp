@@ -31,7 +31,7 @@ Extended::Extended(LAMMPS *lmp, const Scheme &scheme) : Pointers(lmp), scheme(sc
 }
 
 /* ----------------------------------------------------------------------
-   all per-atom data of LAMMPS, by their names in Atom::peratom; doc/src/fix_gear_quat.rst has the
+   all per-atom data of LAMMPS, by their names in Atom::peratom; doc/howto/from_rigid.md has the
    same table by atom styles
 ------------------------------------------------------------------------- */
 
