@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from support.dumps import analyze, columns
 from scipy.spatial.transform import Rotation
 
-from gearquat_analysis import Poses, TablePoses, open_dump, open_table
+from gearquat_analysis import Poses, open_dump
 from lammps_gearquat.cli import main
 from gearquat_analysis.units import UNITS
 from benchmarks.reference import paper_problem, reference_state
@@ -96,15 +96,15 @@ def water(tmp_path_factory):
 def test_poses_are_those_of_the_fixs_own_array(water):
     """Quaternion, angular velocity and momentum, center and velocity, for 216 molecules."""
     sites = Poses(open_dump(water / "water.dump").atoms, reference="principal", units="real").run()
-    table = TablePoses(open_table(water / "water.table").atoms, units="real").run()
-    assert np.array_equal(sites.results.ids, table.results.ids)
-    assert np.array_equal(sites.results.step, table.results.step)
-    both = Rotation.from_quat(
-        sites.results.q.reshape(-1, 4), scalar_first=True
-    ), Rotation.from_quat(table.results.q.reshape(-1, 4), scalar_first=True)
-    assert (both[0] * both[1].inv()).magnitude().max() < 1e-12
-    for name in ("center", "velocity", "omega_space", "angular_momentum_space", "ke_rotation"):
-        found, expected = sites.results[name], table.results[name]
+    last = (water / "water.table").read_text().rpartition("ITEM: ENTRIES")[2].splitlines()[1:]
+    table = np.loadtxt(last)[:, 1:]
+    table = table[table[:, 27].argsort()]  # column N of the fix is table[:, N - 1]
+    table[:, :3] += table[:, 12:15] @ sites.results.cell[-1, 1:]  # images
+    assert np.array_equal(sites.results.ids, table[:, 27])
+    both = (Rotation.from_quat(q, scalar_first=True) for q in (sites.results.q[-1], table[:, 15:19]))
+    assert (next(both) * next(both).inv()).magnitude().max() < 1e-12
+    for name, own in (("center", slice(0, 3)), ("velocity", slice(3, 6)), ("angular_momentum_space", slice(22, 25))):
+        found, expected = sites.results[name][-1], table[:, own]
         assert found == pytest.approx(expected, abs=1e-12 * np.abs(expected).max()), name
 
 
@@ -214,19 +214,6 @@ def test_files_of_others_are_not_written_over(tmp_path):
         assert analyze(path, tmp_path / "out", *options).exit_code == 0
 
 
-@pytest.mark.parametrize(
-    ("arguments", "text"),
-    [
-        (["--data", __file__], "leave out the options for atoms: data"),
-        (["--body", "i_body"], "leave out the options for atoms: body"),
-        (["--reference", "first"], "--reference needs atoms"),
-    ],
-)
-def test_options_about_atoms_are_refused_with_a_table(water, tmp_path, arguments, text):
-    result = analyze(water / "water.table", tmp_path, *arguments)
-    assert result.exit_code == 1 and text in result.output
-
-
 def test_command_tells_of_uneven_times_and_of_bodies_that_are_not_rigid(tmp_path):
     rows = dumps.Motion([3]).rows(0.0)
     frames = [f"ITEM: TIME\n{time}\n" + dumps.frame(k, rows) for k, time in enumerate((0.0, 1.0, 2.5))]
@@ -240,13 +227,6 @@ def test_command_tells_of_uneven_times_and_of_bodies_that_are_not_rigid(tmp_path
     assert (tmp_path / "averages.csv").exists() and not (tmp_path / "correlations.csv").exists()
     result = analyze(path, tmp_path / "one", "--frames", ":1")
     assert "1 frame of 1 body was read" in result.output
-
-
-def test_command_takes_the_table_of_the_fix(water, tmp_path):
-    result = analyze(water / "water.table", tmp_path, "--units", "real")
-    assert result.exit_code == 0, result.output
-    assert "velocity" in np.load(tmp_path / "poses.npy").dtype.names
-    assert "mean_square_rotation" in columns(tmp_path / "correlations.csv").dtype.names
 
 
 @pytest.mark.filterwarnings("ignore:::MDAnalysis")

@@ -5,7 +5,7 @@ import MDAnalysis
 import numpy as np
 import pytest
 
-from gearquat_analysis import DumpError, Poses, open_any, open_dump
+from gearquat_analysis import DumpError, Poses, open_dump
 from gearquat_analysis.convert import convert
 from gearquat_analysis.units import UNITS
 from support.running import make_lmp_wheel
@@ -50,10 +50,8 @@ fix move all gear/quat molecule
 timestep {dt}
 dump plain all custom {every} {units}.plain id mol type mass xu yu zu vx vy vz
 dump timed all custom {every} {units}.timed id mol type mass xu yu zu vx vy vz
-dump table all local {every} {units}.table index f_move[*]
 dump_modify plain format float %.17g
 dump_modify timed units yes time yes format float %.17g
-dump_modify table units yes time yes
 reset_timestep {first}
 run 80
 """
@@ -61,7 +59,7 @@ run 80
 
 @pytest.fixture(scope="module")
 def flights(tmp_path_factory):
-    """Folder with STYLE.plain, .timed and .table of each style, written by LAMMPS."""
+    """Folder with STYLE.plain and .timed of each style, written by LAMMPS."""
     folder = tmp_path_factory.mktemp("flights")
     script = "echo none\n"
     for units, (meter, second) in SI.items():
@@ -142,7 +140,7 @@ def without_pictures(monkeypatch):
         monkeypatch.setattr(f"gearquat_analysis.pictures.{name}", lambda *_: None)
 
 
-@pytest.mark.parametrize("kind", ["plain", "timed", "table"])
+@pytest.mark.parametrize("kind", ["plain", "timed"])
 def test_options_or_the_dump_itself(flights, tmp_path, kind):
     path = tmp_path / "x.trr"
     stated = ["--units", "real", "--timestep", "1.0"] if kind == "plain" else []
@@ -180,7 +178,6 @@ def test_formats_without_times_need_none(flights, tmp_path):
 def test_times_of_the_dump_are_the_ones_that_count(flights, tmp_path):
     said = dumps.analyze(flights / "real.timed", tmp_path, "--timestep", "7")
     assert "--timestep is not used" in said.output and "time 100 to 180" in said.output
-    assert open_any(flights / "real.table", timestep=7.0)[0].trajectory[1].time == 120.0
     assert open_dump(flights / "real.plain", timestep=7.0).trajectory[1].time == 7.0 * 120
 
 

@@ -6,7 +6,7 @@ from support import dumps
 import numpy as np
 import pytest
 
-from gearquat_analysis import DumpError, Poses, open_any, open_dump, open_table
+from gearquat_analysis import DumpError, Poses, open_dump
 
 MOTION = dumps.Motion([3, 4, 5])
 TIMES = [0.0, 1.0, 2.0]
@@ -363,7 +363,7 @@ def test_what_is_not_finite(write, column):
     [
         (b"ITEM: TIMESTEP", b"ITEM: LABEL\nlj\nITEM: TIMESTEP", "the header of a frame of a LAMMPS dump is required"),
         (b"ITEM: TIMESTEP", b"thermo", "the header of a frame of a LAMMPS dump is required"),
-        (b"ITEM: ATOMS", b"ITEM: GRID", "a dump custom or dump local is required"),
+        (b"ITEM: ATOMS", b"ITEM: GRID", "a dump custom is required"),
         (b"ITEM: BOX BOUNDS pp pp pp", b"ITEM: BOX BOUNDS", "an orthogonal or restricted triclinic box"),
         (b"\n1 1 1 ", b"\n1 1 1 oops", "step 0: .*could not convert string"),
         (b"ITEM: TIMESTEP", b"\xff\xfe\0", "this is a binary file; a text dump is required"),
@@ -373,16 +373,6 @@ def test_other_files(write, old, new, text):
     path = write(MOTION, TIMES)
     path.write_bytes(path.read_bytes().replace(old, new))
     with pytest.raises(DumpError, match=text):
-        open_any(path)
-
-
-def test_a_table_with_too_few_columns(write):
-    columns = "id mol type mass f_1[1] f_1[2] f_1[3] vx vy vz"
-    path = write(MOTION, TIMES, columns=columns)
-    path.write_text(path.read_text().replace("ITEM: ATOMS", "ITEM: ENTRIES"))
-    with pytest.raises(DumpError, match="lacks these columns: 4 5 6 13"):
-        open_table(path)
-    with pytest.raises(DumpError, match="open it with open_table"):
         open_dump(path)
 
 
@@ -390,4 +380,3 @@ def test_columns_of_other_fixes_do_no_harm(write):
     add = lambda t, rows: np.column_stack([rows, rows[:, 0]])  # noqa: E731
     path = write(MOTION, TIMES, add, columns=dumps.COLUMNS + " f_average[1]")
     assert centers(path) == pytest.approx(expected(), abs=1e-13)
-    assert open_any(path)[1] is False

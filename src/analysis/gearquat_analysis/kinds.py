@@ -39,8 +39,7 @@ def kinds(poses):
 
     Bodies are of one kind if their sites have the same types and masses, and if their principal moments agree within 2 %.
     The name is the chemical formula if all masses are masses of elements (H2O).  Otherwise it consists of types of
-    atoms: T1(T2)2 has one site of type 1 and two of type 2.  Kinds with the same formula are numbered (C8H10-1).  A table
-    of the fix has no masses, so its bodies are of one kind.  With more than 8 kinds (``too_many``), all bodies are
+    atoms: T1(T2)2 has one site of type 1 and two of type 2.  Kinds with the same formula are numbered (C8H10-1).  With more than 8 kinds (``too_many``), all bodies are
     treated as one kind.
     """
     groups = _groups(poses)

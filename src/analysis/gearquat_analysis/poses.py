@@ -1,6 +1,4 @@
-"""Pose, velocity, energy and momentum of every body in every frame, as MDAnalysis analyses.
-
-``Poses`` computes these data from sites, ``TablePoses`` reads them from the ``dump local`` of the fix's table.
+"""Pose, velocity, energy and momentum of every body in every frame, as an MDAnalysis analysis.
 
     universe = open_dump("water.dump", timestep=1.0)
     poses = Poses(universe.atoms, units="real").run(verbose=True)
@@ -37,7 +35,6 @@ MOTION = {
     "ke_rotation": ONE,
     "velocity_residual": ONE,
 }
-TABLE_MOTION = ("velocity", "omega_space", "angular_momentum_space", "ke_rotation")
 POTENTIAL = {"potential": ONE}
 #: a body is not rigid if its residual is above this fraction of its size and above this fraction of its coordinates, the
 #: largest effect of six digits: 5e-6 of a coordinate in each direction, for a site and its center, in two frames
@@ -168,10 +165,10 @@ class _FrameTable(AnalysisBase):
     def totals(self):
         """Sums over the bodies, name -> (F,) or (F, 3); for residuals, the largest value.
 
-        ``momentum`` and ``angular_momentum_space`` (about the origin) need masses, which a table of the fix does not have.
+        ``momentum`` and ``angular_momentum_space`` (about the origin) need velocities.
         """
-        table, mass = self.results.table, getattr(self, "mass", None)
-        names, known = table.dtype.names, mass is not None and "velocity" in table.dtype.names
+        table, mass = self.results.table, self.mass
+        names, known = table.dtype.names, "velocity" in table.dtype.names
         scalars = [n for n in names if n.startswith(("ke_", "potential")) or n.endswith("residual")]
         vectors = ["momentum", "angular_momentum_space"] if known else []
         sums = {name: np.empty(len(table)) for name in scalars}
@@ -407,41 +404,4 @@ class Poses(_FrameTable):
             "ke_translation": 0.5 * self._energy * bodies.mass * square,
             "ke_rotation": 0.5 * self._energy * np.einsum("bi,bi->b", omega, momentum),
             "velocity_residual": bodies.largest(np.linalg.norm(rest, axis=1)),
-        }
-
-
-class TablePoses(_FrameTable):
-    """Poses and motion from the fix's table, a Universe of ``open_table``: exact, with one row per body.
-
-    Results are ``step``, ``time``, ``ids``, ``center``, ``q``, ``velocity``, ``omega_space``,
-    ``angular_momentum_space`` and ``ke_rotation`` as in ``Poses``.  Masses are not in the table.
-
-    >>> from gearquat_analysis import TablePoses, open_table
-    >>> poses = TablePoses(open_table("nitrogen.table").atoms).run()
-    >>> list(poses.to_dataframe())[:6]
-    ['step', 'time', 'body', 'center_x', 'center_y', 'center_z']
-    """
-
-    def __init__(self, atoms, units=None, out=None, **kwargs):
-        fields = {name: POSE[name] for name in ("center", "q")}
-        fields |= {name: MOTION[name] for name in TABLE_MOTION}
-        super().__init__(atoms.atoms, atoms.atoms.ids, fields, units, out, **kwargs)
-
-    def _frame(self):
-        data, own = self._ts.data, self.atoms.ix
-
-        def columns(letter, parts):
-            return np.column_stack([data[f"{letter}{part}"][own] for part in parts])
-
-        for name, values in (("center", data["x"][own]), ("quaternion", columns("q", "0123"))):
-            self._require_finite(name, values, self.ids)
-        q, momentum = columns("q", "0123"), columns("l", "xyz")
-        omega = rotate(q, columns("w", "xyz"))
-        return {
-            "center": data["x"][own],
-            "q": q,
-            "velocity": data["v"][own],
-            "omega_space": omega,
-            "angular_momentum_space": momentum,
-            "ke_rotation": 0.5 * self._energy * np.einsum("bi,bi->b", omega, momentum),
         }

@@ -17,11 +17,9 @@ def write_totals(path, poses):
 def write_bodies(path, poses):
     """Write a row for each body: ID, number of sites, shape (general, linear, point), mass, principal moments, species.
 
-    The species is written for mixtures only.  For a table of the fix, only the IDs are known.
+    The species is written for mixtures only.
     """
-    bodies = getattr(poses, "bodies", None)
-    if bodies is None:
-        return write_columns(path, {"body": poses.ids})
+    bodies = poses.bodies
     shapes = np.where(bodies.point, "point", np.where(bodies.linear, "linear", "general"))
     header = ["body", "sites", "kind", "mass", "moment_1", "moment_2", "moment_3"]
     columns = [bodies.ids, bodies.counts, shapes, bodies.mass, *bodies.moments.T]
