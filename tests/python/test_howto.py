@@ -301,7 +301,6 @@ def scripts(*pages):
 #: script -> a column with a temperature, its target; columns of the last run -> value, allowed deviation
 SCENES = {
     "ions": ("Temp", 300.0, {"f_move[15]": (1.0, 800.0), "Density": (1.04, 0.06)}),
-    "solute": ("Temp", 300.0, {"f_move[15]": (1.0, 800.0), "Density": (0.96, 0.06)}),
     "polymer": ("Temp", 1.0, {"f_move[15]": (0.5, 0.4), "Density": (0.86, 0.06)}),
     "slit": ("Temp", 100.0, {"f_move[16]": (50.0, 30.0), "f_move[17]": (50.0, 30.0), "Density": (0.40, 0.06)}),
     "adsorption": ("c_guest", 150.0, {"f_move[18]": (50.0, 30.0), "Lz": (26.0, 3.0)}),
