@@ -63,11 +63,9 @@ class Passes {
     std::copy_n(rows + Scheme::POSITION, 3, x);
   }
 
-  Correction center()
+  template <class History> Correction center(History history)
   {
-    of.with_history([&](auto history) {
-      correct_center(history);
-    });
+    correct_center(history);
     return center_found();
   }
 
@@ -228,10 +226,13 @@ Correction Integrator::correct_by_passes(const RigidBody &body, const Load &load
   return Passes(*this, body, load, friction, rows).all();
 }
 
-Correction Integrator::correct_center(const RigidBody &body, const Load &load, double *rows,
-                                      const Friction &friction) const
+void Integrator::correct_centers(const Block &block, const Friction &friction) const
 {
-  return Passes(*this, body, load, friction, rows).center();
+  with_history([&](auto history) {
+    for (int k = 0; k < block.count; ++k)
+      *block.last[k] =
+          Passes(*this, *block.bodies[k], *block.loads[k], friction, block.rows[k]).center(history);
+  });
 }
 
 /* ----------------------------------------------------------------------

@@ -161,9 +161,20 @@ class Integrator : public Kinematics {
     for (int i = 0; i < 3; ++i) turn[i] *= per_inertia[i];
   }
 
-  /// Torque and moments of inertia are not used.
-  Correction correct_center(const RigidBody &body, const Load &load, double *rows,
-                            const Friction &friction = Friction()) const;
+  /// Torques and moments of inertia are not used.
+  void correct_centers(const Block &block, const Friction &friction) const;
+  Correction correct_center(const RigidBody &body, const Load &load, double *rows) const
+  {
+    Correction found;
+    Block one;
+    one.count = 1;
+    one.bodies[0] = &body;
+    one.loads[0] = &load;
+    one.rows[0] = rows;
+    one.last[0] = &found;
+    correct_centers(one, Friction());
+    return found;
+  }
 
  private:
   friend class Passes;

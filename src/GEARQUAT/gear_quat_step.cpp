@@ -637,9 +637,7 @@ template <bool ARE_POINTS> void Step::correct(const std::vector<int> &list, doub
     const Friction &friction = is_special ? own : bath.friction();
     if (tolerance) tolerance->note_prediction(block);
     if (ARE_POINTS)
-      for (int k = 0; k < block.count; ++k)
-        *block.last[k] =
-            integrator->correct_center(*block.bodies[k], *block.loads[k], block.rows[k], friction);
+      integrator->correct_centers(block, friction);
     else
       integrator->correct(block, friction);
     if (tolerance)
