@@ -5,9 +5,7 @@ import types
 import numpy as np
 import pytest
 from support.clumps import FIX, FOR_GEAR
-from matplotlib.figure import Figure
 
-from lammps_gearquat import figures
 from lammps_gearquat.trials import cost, drift, measure
 from lammps_gearquat.trials.drift import Drift
 from lammps_gearquat.trials.measure import Deck
@@ -122,18 +120,6 @@ def test_the_shortest_time_counts():
     rows = costs_from([[9.0, 1.0, 9.0], [2.0, 9.0, 9.0], [9.0, 9.0, 4.0]]).rows
     assert [row.best.seconds for row in rows] == [1.0, 2.0, 4.0]
     assert [row.best.dt for row in rows] == [0.1, 0.05, 0.025]
-
-
-def test_times_of_one_run_are_not_drawn_beside_the_shortest_of_several():
-    """The first run of a method may be slow; without repetitions all points are drawn."""
-
-    def drawn(name, *seconds):
-        figures._draw_prices(axis := Figure().subplots(), name, costs_from(seconds))
-        return axis.lines[0].get_xdata().tolist()
-
-    assert drawn("seconds", [9.0], [3.0, 2.0], [4.0, 5.0]) == [2.0, 4.0]
-    assert drawn("seconds", [9.0], [2.0], [4.0]) == [9.0, 2.0, 4.0]
-    assert drawn("evaluations", [9.0], [3.0, 2.0], [4.0, 5.0]) == pytest.approx([10.0, 20.0, 40.0])
 
 
 def test_a_larger_error_never_costs_more():
