@@ -114,41 +114,30 @@ set atom * charge 0.0
 pair_coeff * * lj/charmm/coul/charmm 1.0 0.8
 pair_coeff * * born 1.0 0.3 1.0 0.0 0.0
 """
-OF_TIME = {
-    "step": "equal 1+0.5*sin(0.05*step)",
-    "time": "equal 1+0.5*time",
-    "atom": "atom 1+0.5*time*(x>0)",
-    "ramp": "equal ramp(1.0,2.0)",
-    "pulse": "equal 1+(step<1)",
+ON_TIME = "forces depend on time (pair style hybrid/scaled)"
+NOT_FOLLOWED = {
+    "step": ("equal 1+0.5*sin(0.05*step)", ON_TIME),
+    "time": ("equal 1+0.5*time", ON_TIME),
+    "atom": ("atom 1+0.5*time*(x>0)", ON_TIME),
+    "ramp": ("equal ramp(1.0,2.0)", ON_TIME),
+    "pulse": ("equal 1+(step<1)", ON_TIME),
+    "random": ("equal random(0.5,1.5,4711)", ON_TIME),
+    "energy": ("equal 1+0.001*pe", "pair style hybrid/scaled depends on energies or pressures, which LAMMPS computes only in steps"),
 }
 FOLLOWED = {"constant": "equal 0.5", "place": "equal 1+0.01*xcm(all,x)", "atom": "atom 1+0.0*x"}
 
 
-def scaled(factor, words="", run="run 3", columns=""):
+def scaled(factor):
     pair = SCALED.format(variable=f"variable factor {factor}")
-    fix = f"fix move all gear/quat molecule {words}\nthermo_style custom step pe ke etotal {columns}\n{PRECISE}\n{run}"
-    return deck(fix, pair, "full")
+    return deck("fix move all gear/quat molecule\nthermo_style custom step pe\nrun 3", pair, "full")
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("name", OF_TIME)
-def test_factors_of_time_are_not_followed(lmp_tree, name, ranks):
-    result = lmp_tree.succeed(scaled(OF_TIME[name]), ranks=ranks)
-    assert f"{FALLBACK} forces depend on time (pair style hybrid/scaled)" in result.stdout
+@pytest.mark.parametrize("number, name", list(enumerate(NOT_FOLLOWED)))
+def test_factors_that_are_not_followed(lmp_tree, name, number):
+    factor, reason = NOT_FOLLOWED[name]
+    assert f"{FALLBACK} {reason}" in lmp_tree.succeed(scaled(factor), ranks=1 + number % 2).stdout
 
 
 @pytest.mark.parametrize("name", FOLLOWED)
 def test_factors_of_positions_are_followed(lmp_tree, name):
     assert FULL in lmp_tree.succeed(scaled(FOLLOWED[name])).stdout
-
-
-def test_a_factor_of_an_energy_is_not_followed(lmp_tree):
-    result = lmp_tree.succeed(scaled("equal 1+0.001*pe"))
-    said = "pair style hybrid/scaled depends on energies or pressures, which LAMMPS computes only in steps"
-    assert f"{FALLBACK} {said}" in result.stdout
-
-
-def test_a_random_factor_is_found(lmp_tree):
-    result = lmp_tree.succeed(scaled("equal random(0.5,1.5,4711)"))
-    said = "forces depend on time (pair style hybrid/scaled)"
-    assert f"{FALLBACK} {said}" in result.stdout

@@ -1,4 +1,4 @@
-/* Collocation in gear_quat_startup.h: extrapolation from the inner nodes, and the convergence measure.
+/* Collocation in gear_quat_startup.h: its states, extrapolation from the inner nodes, and the convergence measure.
    Its series are in test_startup.cpp. */
 
 #include "scenes.h"
@@ -52,6 +52,28 @@ TEST(StartupNodes, AsManyAsTheOrderNeeds)
     EXPECT_GE(2 * collocation.pairs() + 2, scheme.values());    // all rows are found
   }
   for (int pairs : EVERY_PAIRS) EXPECT_EQ(Collocation(values_for(pairs)).pairs(), pairs);
+}
+
+TEST(StartupNodes, StatesAreIntegralsOfThePolynomial)
+{
+  for (int pairs : EVERY_PAIRS) {
+    const Collocation collocation(values_for(pairs));
+    const vector<double> a = of_degree(2 * pairs, pairs);
+    Collocation::Workspace w = nodes_of(a, pairs, pairs);
+    std::fill_n(w.start[0], 6, 0.5);
+    std::fill_n(w.start[1], 6, -0.25);
+    w.body = {1.0, {1e6, 1e6, 1e6}};    // hardly turns
+    w.q[3] = 1.0;
+    vector<double> x = {0.5, -0.25}, rate;    // a integrated twice
+    for (std::size_t j = 0; j < a.size(); ++j) x.push_back(a[j] / ((j + 1) * (j + 2)));
+    for (std::size_t j = 1; j < x.size(); ++j) rate.push_back(double(j) * x[j]);
+    for (int k = -pairs; k <= pairs; ++k) {
+      const BodyState s = collocation.state_at(k, w, 0.5);
+      const double place = polynomial(x, k), velocity = polynomial(rate, k) / 0.5;
+      EXPECT_NEAR(s.center[1], place, 1e-13 * (1.0 + std::fabs(place))) << k << " of " << pairs;
+      EXPECT_NEAR(s.velocity[1], velocity, 1e-13 * (1.0 + std::fabs(velocity)));
+    }
+  }
 }
 
 TEST(StartupNodes, ForetellingIsExactForWhatTheInnerNodesHold)
