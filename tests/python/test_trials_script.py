@@ -177,7 +177,7 @@ def test_isokinetic_runs_are_tried_in_their_formulation_only():
     assert (
         line.with_numerics(first).text() == f"fix 1 a gear/quat molecule {first} isokinetic total"
     )
-    with pytest.raises(DeckError, match="keyword isokinetic: it belongs to formulation first"):
+    with pytest.raises(DeckError, match="isokinetic belongs to formulation first"):
         line.with_numerics("formulation second")
     assert parse("fix 1 a gear/quat molecule isokinetic none").takes("formulation second")
 

@@ -28,8 +28,12 @@ from .methods import methods, named, stated
 from .script import DeckError
 from .worker import NOT_FINISHED
 
-#: keywords of fix gear/quat that confirm a reference; the second text is for isokinetic decks
-CONFIRMATION = ("formulation second values 8 compensate yes", "formulation first values 6 compensate yes")
+#: keywords of fix gear/quat that confirm a reference; the second text is for isokinetic decks, the third for thermostats
+CONFIRMATION = (
+    "formulation second values 8 compensate yes",
+    "formulation first values 6 compensate yes",
+    "values 7 compensate yes",
+)
 #: default errors, in powers of ten of the size of the bodies
 DECADES = (1e-2, 1e-4, 1e-6, 1e-8)
 

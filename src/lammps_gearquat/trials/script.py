@@ -183,7 +183,8 @@ class FixLine:
     def takes(self, text):
         """True if the keywords in ``text`` are compatible with the keywords that define bodies and equations of
         motion."""
-        return not self.isokinetic or dict(pairs(text)).get("formulation") == ("first",)
+        (formulation,) = dict(pairs(text)).get("formulation", ("momentum",))
+        return formulation == "first" if self.isokinetic else formulation == "momentum" or not self.has_chains
 
     def with_numerics(self, text):
         """This line with its keywords about integration replaced by ``text``.
@@ -192,8 +193,8 @@ class FixLine:
         """
         if not self.takes(text):
             raise DeckError(
-                f"fix {self.id}, keyword isokinetic: it belongs to formulation first, so it cannot"
-                f" be tried with '{text}'"
+                f"fix {self.id}: '{text}' cannot be tried, because isokinetic belongs to formulation first, and temp and"
+                " pressures belong to formulation momentum"
             )
         kept = self.only(*_PHYSICAL)
         return replace(kept, keywords=pairs(text) + kept.keywords)
