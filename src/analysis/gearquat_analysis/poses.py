@@ -51,8 +51,75 @@ class _NoResults(Results):
             raise NoDataError(f"results.{name} does not exist yet: call run() first") from None
 
 
-class _FrameTable(AnalysisBase):
-    """A structured array (F, B), filled frame by frame, in memory or in a file."""
+def _flat(records):
+    """Fields of records (n,) as columns."""
+    return flat({name: records[name] for name in records.dtype.names})
+
+
+def _require_whole(atoms):
+    """Raises ValueError unless ``atoms`` are all atoms of their bodies."""
+    left_out = atoms.residues.atoms - atoms
+    left_out = left_out[left_out.resids != 0]
+    if len(left_out):
+        body = left_out[0].residue
+        own = len(left_out[left_out.resids == body.resid])
+        number = counted(len(left_out.residues), "body", "bodies")
+        raise ValueError(
+            f"parts of bodies are selected: {counted(len(left_out), 'atom')} of {number} left out, {own} of the"
+            f" {len(body.atoms)} of body {body.resid}; whole bodies are required: put the selection between the parentheses of"
+            " 'same residue as (...)'"
+        )
+
+
+class Poses(AnalysisBase):
+    """Poses and motion of rigid bodies from the positions and velocities of their sites.
+
+    * ``atoms``: AtomGroup or Universe from ``open_dump`` or another trajectory (such as a DCD with a topology, in single
+      precision).  Residues are the bodies; residue 0 is not a body.
+    * ``reference``: the body frame.  "first": the pose in the first frame; "principal": the shape of the first frame in its
+      principal axes, so that q agrees with the fix (except for bodies with equal moments, whose axes are arbitrary); or
+      positions (n_atoms, 3) of all atoms, in their order.
+    * ``units``: LAMMPS' style of units, if the dump does not have it; energies are in units of this style, or without a
+      style in mass x velocity^2.
+    * ``potential``: column with potential energies of atoms, given to ``open_dump`` as well.
+    * ``out``: file (.npy) for the table; without it the table is in memory.
+
+    Results after ``run``, for F frames and B bodies, in units of the run; ``results.table`` has all as one array:
+
+    * ``step``, ``time`` (F,); ``ids`` (B,)
+    * ``cell`` (F, 4, 3): origin and edges of the box; a unit box along directions that are not periodic
+    * ``center`` (F, B, 3): center of mass, unwrapped
+    * ``q`` (F, B, 4): quaternion, scalar first, body -> space; its sign is continuous in time
+    * ``residual`` (F, B): largest distance of a site from its position in the rigid reference
+    * ``velocity`` (F, B, 3), ``omega_space`` (F, B, 3): the rigid motion that fits the velocities of the sites best
+      (mass-weighted least squares); omega in radians per unit of time
+    * ``angular_momentum_space`` (F, B, 3): about the center of mass
+    * ``ke_translation``, ``ke_rotation`` (F, B): kinetic energies of the rigid motion
+    * ``velocity_residual`` (F, B): largest deviation of a site's velocity from the rigid motion
+    * ``potential`` (F, B)
+
+    The six results from ``velocity`` to ``velocity_residual`` exist if the frames have velocities.  ``bodies`` (Bodies) has
+    masses, shapes and principal moments.  Sites are treated as points.  The angle about the axis of a linear body is
+    undefined: its q is the shortest rotation from the reference, and its omega has no component along the axis.  A point
+    has q = 1 0 0 0 and omega = 0.
+
+    If positions are wrapped, bodies are made whole by nearest images (correct if they are smaller than half the box), and
+    centers are unwrapped from frame to frame (correct if they move less than half the box).
+
+    Raises ValueError for parts of bodies, bodies without mass, atoms that are in the group twice, a reference of another
+    shape and coordinates that are not finite.  ``run`` warns of bodies that are not rigid: their residual is above 5 % of
+    the largest distance of a site from the center of mass, and above 4e-5 of a coordinate, the effect of six digits.
+    ``results`` raises MDAnalysis' NoDataError before ``run``.
+
+    >>> from gearquat_analysis import Poses, open_dump
+    >>> poses = Poses(open_dump("nitrogen.dump").atoms, reference="principal").run(step=100)
+    >>> poses.results.center.shape, poses.results.q.shape, poses.unit("omega_space")
+    ((9, 64, 3), (9, 64, 4), 'rad/fs')
+    >>> poses.to_xarray()["velocity"].dims
+    ('time', 'body', 'axis')
+    >>> bool(poses.results.residual.max() < 1e-7)
+    True
+    """
 
     _analysis_algorithm_is_parallelizable = True
 
@@ -61,19 +128,64 @@ class _FrameTable(AnalysisBase):
         """The serial backend, and the backends of MDAnalysis that use processes."""
         return ("serial", "multiprocessing", "dask")
 
-    def __init__(self, atoms, ids, fields, units, out, **kwargs):
+    def __init__(self, atoms, reference="first", units=None, potential=None, out=None, **kwargs):
+        atoms = atoms.atoms
+        _require_whole(atoms)
         trajectory = atoms.universe.trajectory
         if len(np.unique(atoms.ix)) < len(atoms):
             raise ValueError("an atom is in the group twice; each is required once (atoms.unique)")
+        self.bodies = Bodies(atoms.resids, atoms.masses)
+        self.mass, self.ids = self.bodies.mass, self.bodies.ids
+        first = trajectory[0]
+        if potential and potential not in first.data:
+            raise ValueError(f"no column {potential} was read with the dump")
         self.units = style_of(trajectory, units)
         super().__init__(trajectory, **kwargs)
         self.results = _NoResults()
-        self.atoms, self.ids = atoms, ids
-        self.periodic = np.asarray(trajectory[0].data.get("periodic", np.ones(3)), dtype=bool)
+        self.atoms, self._potential, self._wrapped = atoms, potential, False
+        self.periodic = np.asarray(first.data.get("periodic", np.ones(3)), dtype=bool)
         self._counted = getattr(trajectory, "counted", False)
         self._energy = UNITS[self.units or "lj"].energy
+        moving = "v" in first.data or first.has_velocities
+        fields = POSE | (MOTION if moving else {}) | (POTENTIAL if potential else {})
         self._dtype = np.dtype([(name, *kind) for name, kind in fields.items()])
         self._out = None if out is None else str(out)
+        self._set_reference(reference)
+
+    def _set_reference(self, reference):
+        if isinstance(reference, str):
+            if reference not in ("first", "principal"):
+                raise ValueError(f"reference {reference}: first, principal or positions are required")
+            self._ts = self._trajectory[0]
+            self.bodies.set_shape(self._sites()[0], principal=reference == "principal")
+            return
+        reference = np.asarray(reference, dtype=float)
+        if reference.shape != (len(self.atoms), 3):
+            raise ValueError(
+                f"reference: positions of shape {(len(self.atoms), 3)} are required, not {reference.shape}"
+            )
+        if not np.isfinite(reference).all():
+            raise ValueError("reference: finite numbers are required")
+        self.bodies.set_shape(reference[self.bodies.index])
+
+    def _sites(self):
+        """Positions (n, 3) of whole bodies, and velocities (n, 3) or None, in the current frame."""
+        ts, own = self._ts, self.atoms.ix[self.bodies.index]
+        if "x" in ts.data:
+            x, v, whole, box = ts.data["x"][own], ts.data.get("v"), ts.data["whole"], ts.data["box"]
+        else:
+            x = ts.positions[own].astype(float)
+            v = ts.velocities if ts.has_velocities else None
+            box = ts.triclinic_dimensions
+            whole = box is None
+        v = None if v is None else v[own].astype(float)
+        for name, values in (("position", x), ("velocity", v)):
+            if values is not None:
+                self._require_finite(f"a site's {name}", values, self.ids[self.bodies.of])
+        if not whole:
+            self._wrapped = True
+            x = self.bodies.whole(x, box, self.periodic)
+        return x, v
 
     def run(self, start=None, stop=None, step=None, frames=None, **kwargs):
         """Same as MDAnalysis' ``AnalysisBase.run``.
@@ -109,8 +221,37 @@ class _FrameTable(AnalysisBase):
             table[name][row] = values
 
     def _frame(self):
-        """Fields of the current frame, name -> (B, ...)."""
-        raise NotImplementedError
+        bodies = self.bodies
+        x, v = self._sites()
+        center = bodies.center(x)
+        arms = x - center[bodies.of]
+        q, residual = superpose(bodies, arms)
+        fields = {"center": center, "q": q, "residual": residual}
+        if v is not None:
+            # arms of the rigid shape, not of the sites, which would lose digits for thin bodies
+            fields |= self._motion(q, rotate(q[bodies.of], bodies.shape), v)
+        if self._potential:
+            own = self.atoms.ix[bodies.index]
+            fields["potential"] = bodies.sum(self._ts.data[self._potential][own])
+        return fields
+
+    def _motion(self, q, arms, v):
+        """Velocity, angular velocity and derived fields; ``arms`` and ``v`` (n, 3) of the sites."""
+        bodies = self.bodies
+        velocity = bodies.center(v)
+        relative = v - velocity[bodies.of]
+        momentum = bodies.sum(bodies.masses[:, None] * np.cross(arms, relative))
+        omega = bodies.divided_by_inertia(q, momentum)
+        rest = relative - np.cross(omega[bodies.of], arms)
+        square = np.einsum("bi,bi->b", velocity, velocity)
+        return {
+            "velocity": velocity,
+            "omega_space": omega,
+            "angular_momentum_space": momentum,
+            "ke_translation": 0.5 * self._energy * bodies.mass * square,
+            "ke_rotation": 0.5 * self._energy * np.einsum("bi,bi->b", omega, momentum),
+            "velocity_residual": bodies.largest(np.linalg.norm(rest, axis=1)),
+        }
 
     def _cell(self):
         """Origin and edges (4, 3) of the box; a unit box along directions that are not periodic; NaN without a box."""
@@ -145,11 +286,12 @@ class _FrameTable(AnalysisBase):
         results.time, results.ids = self.times, self.ids
         for name in self._dtype.names:
             results[name] = results.table[name]
+        self._warn_of_bent_bodies()
 
     def _join(self):
         """Make signs of quaternions continuous in time, and centers as well if positions are wrapped."""
         q, center, cell = self.results.table["q"], self.results.table["center"], self.results.cell
-        periodic = self._images()
+        periodic = self.periodic if self._wrapped else None
         for k in mapped.rows(q, 1):
             turned = np.einsum("bi,bi->b", q[k], q[k - 1]) < 0.0
             q[k, turned] *= -1.0
@@ -157,9 +299,22 @@ class _FrameTable(AnalysisBase):
                 moved = center[k] - mapped.carried(center[k - 1], *cell[k - 1 : k + 1])
                 center[k] -= np.round(moved @ np.linalg.inv(cell[k, 1:])) * periodic @ cell[k, 1:]
 
-    def _images(self):
-        """The periodic directions (3,) if centers must be unwrapped from frame to frame, else None."""
-        return None
+    def _warn_of_bent_bodies(self):
+        bodies, (center, residual) = self.bodies, (self.results.center, self.results.residual)
+        size = bodies.largest(np.linalg.norm(bodies.shape, axis=1))
+        worst = 0.0, 0, 0
+        for k in mapped.rows(residual):
+            rounded = residual[k] <= ROUNDED * np.abs(center[k]).max(axis=1)
+            ratio = np.where(rounded, 0.0, residual[k]) / np.where(size > 0.0, size, np.inf)
+            worst = max(worst, (ratio.max(), k, int(ratio.argmax())))
+        ratio, k, body = worst
+        if ratio > NOT_RIGID:
+            warnings.warn(
+                f"{self._trajectory.filename}: body {self.ids[body]} is not rigid: at step {self.results.step[k]} a site"
+                f" deviates by {residual[k, body]:.2g} from the rigid body, {ratio:.0%} of the body's size. Check the IDs of"
+                " bodies, and that positions are unwrapped at the boundaries of the box.",
+                stacklevel=5,
+            )
 
     # --- uses of the table ------------------------------------------------------------
     def totals(self):
@@ -229,179 +384,3 @@ class _FrameTable(AnalysisBase):
                 keys = [np.full(len(self.ids), self.results[name][k]) for name in ("step", "time")]
                 values = np.column_stack([*keys, self.ids, *_flat(self.results.table[k]).values()])
                 np.savetxt(file, values, fmt="%.17g", delimiter=",")
-
-
-def _flat(records):
-    """Fields of records (n,) as columns."""
-    return flat({name: records[name] for name in records.dtype.names})
-
-
-def _require_whole(atoms):
-    """Raises ValueError unless ``atoms`` are all atoms of their bodies."""
-    left_out = atoms.residues.atoms - atoms
-    left_out = left_out[left_out.resids != 0]
-    if len(left_out):
-        body = left_out[0].residue
-        own = len(left_out[left_out.resids == body.resid])
-        number = counted(len(left_out.residues), "body", "bodies")
-        raise ValueError(
-            f"parts of bodies are selected: {counted(len(left_out), 'atom')} of {number} left out, {own} of the"
-            f" {len(body.atoms)} of body {body.resid}; whole bodies are required: put the selection between the parentheses of"
-            " 'same residue as (...)'"
-        )
-
-
-class Poses(_FrameTable):
-    """Poses and motion of rigid bodies from the positions and velocities of their sites.
-
-    * ``atoms``: AtomGroup or Universe from ``open_dump`` or another trajectory (such as a DCD with a topology, in single
-      precision).  Residues are the bodies; residue 0 is not a body.
-    * ``reference``: the body frame.  "first": the pose in the first frame; "principal": the shape of the first frame in its
-      principal axes, so that q agrees with the fix (except for bodies with equal moments, whose axes are arbitrary); or
-      positions (n_atoms, 3) of all atoms, in their order.
-    * ``units``: LAMMPS' style of units, if the dump does not have it; energies are in units of this style, or without a
-      style in mass x velocity^2.
-    * ``potential``: column with potential energies of atoms, given to ``open_dump`` as well.
-    * ``out``: file (.npy) for the table; without it the table is in memory.
-
-    Results after ``run``, for F frames and B bodies, in units of the run; ``results.table`` has all as one array:
-
-    * ``step``, ``time`` (F,); ``ids`` (B,)
-    * ``cell`` (F, 4, 3): origin and edges of the box; a unit box along directions that are not periodic
-    * ``center`` (F, B, 3): center of mass, unwrapped
-    * ``q`` (F, B, 4): quaternion, scalar first, body -> space; its sign is continuous in time
-    * ``residual`` (F, B): largest distance of a site from its position in the rigid reference
-    * ``velocity`` (F, B, 3), ``omega_space`` (F, B, 3): the rigid motion that fits the velocities of the sites best
-      (mass-weighted least squares); omega in radians per unit of time
-    * ``angular_momentum_space`` (F, B, 3): about the center of mass
-    * ``ke_translation``, ``ke_rotation`` (F, B): kinetic energies of the rigid motion
-    * ``velocity_residual`` (F, B): largest deviation of a site's velocity from the rigid motion
-    * ``potential`` (F, B)
-
-    The six results from ``velocity`` to ``velocity_residual`` exist if the frames have velocities.  ``bodies`` (Bodies) has
-    masses, shapes and principal moments.  Sites are treated as points.  The angle about the axis of a linear body is
-    undefined: its q is the shortest rotation from the reference, and its omega has no component along the axis.  A point
-    has q = 1 0 0 0 and omega = 0.
-
-    If positions are wrapped, bodies are made whole by nearest images (correct if they are smaller than half the box), and
-    centers are unwrapped from frame to frame (correct if they move less than half the box).
-
-    Raises ValueError for parts of bodies, bodies without mass, atoms that are in the group twice, a reference of another
-    shape and coordinates that are not finite.  ``run`` warns of bodies that are not rigid: their residual is above 5 % of
-    the largest distance of a site from the center of mass, and above 4e-5 of a coordinate, the effect of six digits.
-    ``results`` raises MDAnalysis' NoDataError before ``run``.
-
-    >>> from gearquat_analysis import Poses, open_dump
-    >>> poses = Poses(open_dump("nitrogen.dump").atoms, reference="principal").run(step=100)
-    >>> poses.results.center.shape, poses.results.q.shape, poses.unit("omega_space")
-    ((9, 64, 3), (9, 64, 4), 'rad/fs')
-    >>> poses.to_xarray()["velocity"].dims
-    ('time', 'body', 'axis')
-    >>> bool(poses.results.residual.max() < 1e-7)
-    True
-    """
-
-    def __init__(self, atoms, reference="first", units=None, potential=None, out=None, **kwargs):
-        atoms = atoms.atoms
-        _require_whole(atoms)
-        self.bodies = Bodies(atoms.resids, atoms.masses)
-        self.mass = self.bodies.mass
-        trajectory = atoms.universe.trajectory
-        self._potential, self.atoms = potential, atoms
-        first = trajectory[0]
-        if potential and potential not in first.data:
-            raise ValueError(f"no column {potential} was read with the dump")
-        has_velocities = "v" in first.data or first.has_velocities
-        fields = POSE | (MOTION if has_velocities else {}) | (POTENTIAL if potential else {})
-        super().__init__(atoms, self.bodies.ids, fields, units, out, **kwargs)
-        self._wrapped = False
-        self._set_reference(reference)
-
-    def _set_reference(self, reference):
-        if isinstance(reference, str):
-            if reference not in ("first", "principal"):
-                raise ValueError(f"reference {reference}: first, principal or positions are required")
-            self._ts = self._trajectory[0]
-            self.bodies.set_shape(self._sites()[0], principal=reference == "principal")
-            return
-        reference = np.asarray(reference, dtype=float)
-        if reference.shape != (len(self.atoms), 3):
-            raise ValueError(
-                f"reference: positions of shape {(len(self.atoms), 3)} are required, not {reference.shape}"
-            )
-        if not np.isfinite(reference).all():
-            raise ValueError("reference: finite numbers are required")
-        self.bodies.set_shape(reference[self.bodies.index])
-
-    def _sites(self):
-        """Positions (n, 3) of whole bodies, and velocities (n, 3) or None, in the current frame."""
-        ts, own = self._ts, self.atoms.ix[self.bodies.index]
-        if "x" in ts.data:
-            x, v, whole, box = ts.data["x"][own], ts.data.get("v"), ts.data["whole"], ts.data["box"]
-        else:
-            x = ts.positions[own].astype(float)
-            v = ts.velocities if ts.has_velocities else None
-            box = ts.triclinic_dimensions
-            whole = box is None
-        v = None if v is None else v[own].astype(float)
-        for name, values in (("position", x), ("velocity", v)):
-            if values is not None:
-                self._require_finite(f"a site's {name}", values, self.ids[self.bodies.of])
-        if not whole:
-            self._wrapped = True
-            x = self.bodies.whole(x, box, self.periodic)
-        return x, v
-
-    def _images(self):
-        return self.periodic if self._wrapped else None
-
-    def _conclude(self):
-        super()._conclude()
-        bodies, (center, residual) = self.bodies, (self.results.center, self.results.residual)
-        size = bodies.largest(np.linalg.norm(bodies.shape, axis=1))
-        worst = 0.0, 0, 0
-        for k in mapped.rows(residual):
-            rounded = residual[k] <= ROUNDED * np.abs(center[k]).max(axis=1)
-            ratio = np.where(rounded, 0.0, residual[k]) / np.where(size > 0.0, size, np.inf)
-            worst = max(worst, (ratio.max(), k, int(ratio.argmax())))
-        ratio, k, body = worst
-        if ratio > NOT_RIGID:
-            warnings.warn(
-                f"{self._trajectory.filename}: body {self.ids[body]} is not rigid: at step {self.results.step[k]} a site"
-                f" deviates by {residual[k, body]:.2g} from the rigid body, {ratio:.0%} of the body's size. Check the IDs of"
-                " bodies, and that positions are unwrapped at the boundaries of the box.",
-                stacklevel=4,
-            )
-
-    def _frame(self):
-        bodies = self.bodies
-        x, v = self._sites()
-        center = bodies.center(x)
-        arms = x - center[bodies.of]
-        q, residual = superpose(bodies, arms)
-        fields = {"center": center, "q": q, "residual": residual}
-        if v is not None:
-            # arms of the rigid shape, not of the sites, which would lose digits for thin bodies
-            fields |= self._motion(q, rotate(q[bodies.of], bodies.shape), v)
-        if self._potential:
-            own = self.atoms.ix[bodies.index]
-            fields["potential"] = bodies.sum(self._ts.data[self._potential][own])
-        return fields
-
-    def _motion(self, q, arms, v):
-        """Velocity, angular velocity and derived fields; ``arms`` and ``v`` (n, 3) of the sites."""
-        bodies = self.bodies
-        velocity = bodies.center(v)
-        relative = v - velocity[bodies.of]
-        momentum = bodies.sum(bodies.masses[:, None] * np.cross(arms, relative))
-        omega = bodies.divided_by_inertia(q, momentum)
-        rest = relative - np.cross(omega[bodies.of], arms)
-        square = np.einsum("bi,bi->b", velocity, velocity)
-        return {
-            "velocity": velocity,
-            "omega_space": omega,
-            "angular_momentum_space": momentum,
-            "ke_translation": 0.5 * self._energy * bodies.mass * square,
-            "ke_rotation": 0.5 * self._energy * np.einsum("bi,bi->b", omega, momentum),
-            "velocity_residual": bodies.largest(np.linalg.norm(rest, axis=1)),
-        }
