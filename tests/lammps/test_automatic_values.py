@@ -163,11 +163,6 @@ def test_a_body_in_a_dpd_fluid(lmp_wheel):
     assert np.ptp(ours[1]) < 1e-12 * ours[1][0]
 
 
-def test_a_stated_number_is_warned_of(lmp_tree, data):
-    after = "fix l all langevin 300 300 100 4711"
-    assert "9 values cannot follow them" in run(lmp_tree, data, "values 9", after=after, dt=SHORT).words
-
-
 def test_a_gas_that_cools_collides_with_nothing(lmp_tree):
     """Its friction is strong at first; without forces there is nothing to warn of."""
     hot = "velocity all create 34 991\nthermo_style custom step temp"

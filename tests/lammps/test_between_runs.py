@@ -26,9 +26,9 @@ CHANGES = {
     "box": "change_box all z final 0 10.2 units box",
 }
 FIXES = {
-    "second": "",
+    "momentum": "",
+    "second": "formulation second",
     "first": "formulation first",
-    "momentum": "formulation momentum",
     "isokinetic": "formulation first isokinetic total",
     "masks": "force 1*5 on off off torque 3* off off on",
     "zero": "start zero corrector gear",  # histories with tuned coefficients contain more of this start after 60 steps
@@ -61,7 +61,7 @@ def test_forces_changed_between_runs(lmp_tree, data, fix):
     The step is 0.25 fs because the switching function of the forces has kinks. At 0.5 fs the errors from kinks in every
     step would exceed the smallest of these changes, since errors from kinks decay more slowly with tuned coefficients.
     """
-    changes = CHANGES if fix == "second" else {"pair_coeff": CHANGES["pair_coeff"]}
+    changes = CHANGES if fix == "momentum" else {"pair_coeff": CHANGES["pair_coeff"]}
     words = FIXES[fix]
     decks = [
         deck(data, words, change + end, dt=0.25) for change in changes.values() for end in ("", anew(words))

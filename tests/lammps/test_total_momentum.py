@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.running import EXAMPLES
 from support.scenes import largest_change, last_frame, one_after_the_other
-from support.constant_temperature import END, KINDS, TEMP, cluster
+from support.constant_temperature import KINDS, TEMP, cluster
 from support.step_control import tables
 
 DUMBBELL = """d
@@ -157,17 +157,6 @@ def test_the_order_of_definition_does_not_matter(lmp_tree):
     one, other = result.thermo
     assert one["f_move[10]"] == pytest.approx(other["f_move[10]"], rel=1e-13)
     assert one["f_move[10]"][0] == pytest.approx(relative(one, "")[0] / 24, rel=1e-12)
-
-
-def test_the_temperature_of_eight_dumbbells(lmp_tree):
-    """An error of three in 37 degrees of freedom would be 8 %."""
-    temperature = "variable T equal (2*(f_move[1]+f_move[2])-v_cx-v_cy-v_cz)/37"
-    mean = "fix T all ave/time 10 9000 100000 v_T file mean"
-    deck = dumbbells(lmp_tree, "fix it all store/force", run=f"run 10000\n{mean}\nrun 90000", every=100000)
-    lmp_tree.succeed(deck.replace("thermo_style", f"{temperature}\nthermo_style"))
-    found = float((lmp_tree.folder / "mean").read_text().split()[-1])
-    assert found == pytest.approx(1.0, abs=0.03)
-    assert found * 40 / 37 != pytest.approx(1.0, abs=0.03)
 
 
 def test_atoms_outside_and_another_fix(lmp_tree):
@@ -337,20 +326,6 @@ def test_a_common_motion_changes_nothing(lmp_tree, kind):
     assert np.abs(ends[1] - ends[0]).max() > 1.0
 
 
-def test_momentum_left_by_langevin(lmp_tree):
-    """The common momentum is constant, does not count as heat, and changes nothing else."""
-    before = "fix old all gear/quat molecule values 4\nfix bath all langevin 1 1 0.1 4711\nrun 100\n"
-    before += "unfix bath\nunfix old"
-    deck = dumbbells(lmp_tree, before=before, every=1, run="run 200")
-    result = lmp_tree.succeed(deck)
-    table = tables(result)[-1]
-    assert said(result.log) == [(21, "xyz", 16)]
-    assert relative(table) / table["f_move[10]"] == pytest.approx(21, rel=1e-10)
-    for k in "xyz":
-        assert table[f"v_c{k}"] == pytest.approx(table[f"v_c{k}"][0], rel=1e-9)
-    assert sum(table[f"v_c{k}"][0] for k in "xyz") > 0.2
-
-
 def test_a_single_body(lmp_tree):
     """Alone in a periodic box a body has no heat; a tether adds its momentum."""
     alone = dict(bodies=[[(0.3, 0.1, 0.2)]], exclude="", time=0.2, columns="f_move[10] f_move[9]", boundary="p p p")
@@ -362,14 +337,3 @@ def test_a_single_body(lmp_tree):
     assert set(free["f_move[10]"]) == set(free["f_move[9]"]) == {0.0}
     assert held["f_move[10]"] == pytest.approx(2 * held["f_move[1]"] / 3, rel=1e-12)
     assert abs(held["f_move[9]"][-1]) > 1e-2
-
-
-def test_ranks(lmp_tree):
-    """A heavy body among light bodies moves; the distribution of bodies over ranks does not matter."""
-    ends, deck = [], moving(TEMP, (0.3, 0.2, 0.1), run="run 50\n" + END.format("a"), masses="mass 1 1.0\nmass 2 1000.0")
-    heavy = deck.replace("set atom 4*6 mol 2", "set atom 4*6 mol 2 type 2")
-    assert heavy != deck
-    for ranks in (1, 2, 4):
-        lmp_tree.succeed(heavy, ranks=ranks)
-        ends.append(last_frame(lmp_tree.folder / "a.end"))
-    assert max(np.abs(end - ends[0]).max() for end in ends) < 1e-11
