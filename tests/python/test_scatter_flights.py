@@ -82,14 +82,14 @@ def test_deflection_of_atoms(tmp_path):
 
 
 def test_time_reversal(dumbbells):
-    """A reversed flight ends with the initial velocities and angular momenta."""
+    """A reversed flight ends with the initial velocities and angular momenta; bodies that orbit each other amplify errors."""
     plan, points = planned(dumbbells, seed=2)
-    for _, _, start in plan.starts(dumbbells, points[:10]):
+    errors = []
+    for _, _, start in plan.starts(dumbbells, points[:16]):
         end = dumbbells.fly(start)
         back = dumbbells.fly(replace(end, velocity=-end.velocity, momentum=-end.momentum))
-        # bodies that orbit each other amplify errors exponentially
-        assert back.velocity == pytest.approx(-start.velocity, abs=1e-3)
-        assert back.momentum == pytest.approx(-start.momentum, abs=1e-3)
+        errors.append([np.abs(back.velocity + start.velocity).max(), np.abs(back.momentum + start.momentum).max()])
+    assert np.median(errors, axis=0).max() < 3e-7 and np.max(errors) < 1e-3
 
 
 def test_a_flight_does_not_depend_on_those_before(dumbbells):
