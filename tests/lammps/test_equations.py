@@ -170,7 +170,8 @@ def test_the_motion_is_that_of_the_equations(lmp_wheel, name):
         if dt == 0.0025:
             assert errors[scheme, dt][:2].max() < 1e-9, scheme
             continue
-        slopes = np.log2(errors[scheme, steps[0]] / np.maximum(errors[scheme, steps[-1]], 1e-30)) / 2
+        wide, narrow = (np.maximum(errors[scheme, steps[k]], 1e-30) for k in (0, -1))
+        slopes = np.log2(wide / narrow) / 2
         # the error of the energy is a difference of two, whose signs differ at some steps
         least = SCHEMES[scheme] - np.array([0.6, 0.6, 0.9])
         above_rounding = errors[scheme, steps[-1]] > 1e-11

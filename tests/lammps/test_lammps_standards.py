@@ -68,7 +68,7 @@ README = (PACKAGE / "README").read_text()
 
 def files_listed(readme):
     """Files that the README lists; a name without an ending denotes a header and a source file."""
-    for name, ending in re.findall(r"^ +((?:fix_)?gear_quat\w*)(\.h|\.cpp)?  ", readme, re.M):
+    for name, ending in re.findall(r"^ +((?:fix_)?gear_quat\w*)(\.h|\.cpp)? +\S", readme, re.M):
         yield from [name + ending] if ending else [f"{name}.cpp", f"{name}.h"]
 
 
