@@ -22,6 +22,7 @@
 #include "group.h"
 #include "input.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
@@ -66,7 +67,8 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   for (int k = 0; k < PressureWords::COMPONENTS; ++k)
     if (args.pressure.on[k]) box_change |= CHANGES[k];
   if (args.pressure.any()) no_change_box = 1;
-  if (args.pressure.shears()) force_reneighbor = 1, next_reneighbor = -1;
+  force_reneighbor = args.pressure.shears() || !args.reinit || !args.mol.empty();
+  next_reneighbor = -1;
   maxexchange = ownership.max_exchange();
   comm_forward = ownership.max_forward();
   comm_reverse = Ownership::MOST_NUMBERS;
@@ -178,10 +180,31 @@ void FixGearQuat::setup_pre_neighbor()
     step.forget("Fix gear/quat: atoms were changed since the last run; bodies are rebuilt from "
                 "them");
   }
+  if (!takes_over && !defined) put_back();
   ownership.note_box();
   step.impose_masks();
   if (defined) step.phase = Phase::COMPARED;
   count_rows();
+}
+
+/// Atoms are where bodies have them before forces are evaluated, except in rerun.  Ghost atoms have
+/// been chosen by the places before: with those in the skin of neighbor lists none is missing yet.
+void FixGearQuat::put_back()
+{
+  const double farthest = sites.farthest();
+  if (farthest == 0.0 || strcmp(input->command, "rerun") == 0) return;
+  if (farthest > neighbor->skin)
+    error->all(
+        FLERR,
+        "Fix gear/quat: atoms of bodies were moved by up to {:.3g} since the last run, but with "
+        "{} bodies stay where they are; undo the change, or define the fix again",
+        farthest,
+        !args.infile.empty()  ? "infile"
+            : !stated.empty() ? "mol"
+                              : "reinit no");
+  sites.place(true);
+  comm->forward_comm();
+  next_reneighbor = update->ntimestep + 1;
 }
 
 /// Atoms are changed only after all checks that may end the run.

@@ -139,6 +139,7 @@ class FixGearQuat : public Fix {
   bool is_minimized() const;
   void create_bodies();
   void update_bodies();
+  void put_back();
   void resume();
   void begin_step(int, double **, double **);
   void end_step(double **, double **);

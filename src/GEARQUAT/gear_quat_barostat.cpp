@@ -438,7 +438,8 @@ void Barostat::begin_run(bool anew, double h)
 {
   if (!moves()) return;
   if (temperature.freedoms[Temperature::TRANSLATION] < 1.0)
-    error->all(FLERR, "Fix gear/quat: constant pressure requires more than one body");
+    error->all(FLERR,
+               "Fix gear/quat: constant pressure requires more than one body that is free to move");
   if (update->nsteps > 0 || anew) find_target(update->ntimestep, h);
   tell_freedoms();
   if (anew) refer_to_box(h);

@@ -188,6 +188,7 @@ void Chain::begin_settled(const ChainTarget &target, double twice_kinetic, doubl
 
 bool Chain::advance(const ChainTarget &target, double twice_kinetic, double h, int values)
 {
+  known = earlier(h);
   latest = twice_kinetic;
   width = h;
   double x[MOST_SUMS + 1] = {1.0}, y[MOST_SUMS + 1] = {twice_kinetic};
@@ -204,7 +205,7 @@ bool Chain::advance(const ChainTarget &target, double twice_kinetic, double h, i
 double Chain::foretold(double h, int values) const
 {
   double x[MOST_SUMS];
-  const int points = std::min(values, known);
+  const int points = std::min(values, earlier(h));
   for (int i = 0; i < points; ++i) x[i] = -ages[i] / h;
   const ChainDrive drive = ChainDrive::through(points, x, sums.data());
   double sum = 0.0;

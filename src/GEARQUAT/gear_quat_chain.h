@@ -135,8 +135,10 @@ class Chain {
 
  private:
   int length;
-  Variables begun = {};                                  ///< at the beginning of the step
-  Variables now = {};                                    ///< in the present pass
+  Variables begun = {};    ///< at the beginning of the step
+  Variables now = {};      ///< in the present pass
+  /// The number of sums of times before this step: none but the last after a change of direction.
+  int earlier(double h) const { return known > 1 && ages[1] * h < 0.0 ? 1 : known; }
   int known = 0;                                         ///< earlier sums
   std::array<double, MOST_SUMS> sums = {}, ages = {};    ///< 2K, and how long ago
   double latest = 0.0, width = 0.0;                      ///< 2K and length of the present step

@@ -148,9 +148,11 @@ void DrivenBox::init()
     if (!known(Fact::CARRIES_BODIES, other))
       error->all(FLERR,
                  "Fix gear/quat: {} changes the box without informing other fixes of "
-                 "the remap, so bodies cannot follow; use fix deform, fix press/berendsen, or "
-                 "fix npt on other atoms",
-                 name_of(other));
+                 "the remap, so bodies cannot follow; {}",
+                 name_of(other),
+                 utils::strmatch(other->style, "^gear/quat")
+                     ? "put all bodies in one fix"
+                     : "use fix deform, fix press/berendsen, or fix npt on other atoms");
     if (args.pressure.any())
       error->all(FLERR,
                  "Fix gear/quat: keywords of constant pressure change the box, and {} "

@@ -291,6 +291,19 @@ bool Sites::is_as_fast(const Site &site) const
    masses, positions and velocities
 ------------------------------------------------------------------------- */
 
+double Sites::farthest() const
+{
+  double here = 0.0;
+  for (const Site &site : sites) {
+    if (is_there(site)) continue;
+    double apart[3];
+    const Expected there = expected_position(site);
+    for (int k = 0; k < 3; ++k) apart[k] = atom->x[site.atom][k] - there.value[k];
+    here = std::max(here, length(apart));
+  }
+  return over_ranks(MPI_MAX, here, world);
+}
+
 bool Sites::any_changes() const
 {
   int here = 0;

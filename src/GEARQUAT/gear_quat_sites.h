@@ -60,6 +60,8 @@ class Sites : protected Pointers {
   /// True if masses, positions, velocities or orientations of atoms differ from their bodies.
   /// Collective.
   bool any_changes() const;
+  /// The largest distance between an atom and its place in its body, 0 up to rounding.  Collective.
+  double farthest() const;
   /// The number of times that sites were listed or placed, the same on all ranks: results computed
   /// from positions or loads at another number are out of date.
   int placements() const { return nplacements; }

@@ -184,6 +184,8 @@ const char *Step::reason_to_start_anew(double **f)
   const bool other_length = now < SHORTER * last || (now > LONGER * last && last != 0.0);
   if (other_length && can_start_anew())
     return "the time step has changed by more than a factor of two";
+  if (bath.acts() && length() * time_step.begun() < 0.0 && can_start_anew())
+    return "the time step has changed its sign";
   if (const char *other = another_scheme_suits()) return other;
   const char *changed = bath.reason_to_start_anew();
   if (changed && (tolerance || (bootstraps() && forces_can_be_followed()))) return changed;

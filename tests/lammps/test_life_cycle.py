@@ -100,6 +100,19 @@ run 5
     assert after["KinEng"] == pytest.approx(before["KinEng"], rel=1e-9)
 
 
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_with_reinit_no_atoms_stay_in_their_bodies(lmp_tree, ranks):
+    """They are put back before forces are evaluated; beyond the skin of neighbor lists that is an error."""
+    before = "pair_style lj/cut 9.0\npair_coeff 1 1 1.0 1.0\nneigh_modify exclude molecule/intra all"
+    after = "thermo_style custom step pe\nthermo_modify norm no format float %.17g\nrun 5\ngroup one id 1\n"
+    after += "displace_atoms one move {} 0 0\nrun 5"
+    result = lmp_tree.succeed(two_molecules("molecule reinit no", before, after.format(0.1)), ranks=ranks)
+    before, again = result.thermo
+    assert again["PotEng"][0] == pytest.approx(before["PotEng"][-1], rel=1e-14)
+    far = "moved by up to 0.5 since the last run, but with reinit no bodies stay where they are"
+    lmp_tree.refuse(two_molecules("molecule reinit no", before, after.format(0.5)), far, ranks=ranks)
+
+
 @pytest.mark.parametrize("reinit", ["yes", "no"])
 def test_velocities_given_after_the_fix_count(lmp_tree, reinit):
     """Before the first run reinit does not matter, as with fix rigid."""

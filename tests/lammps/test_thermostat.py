@@ -29,6 +29,16 @@ def test_the_columns_belong_together(lmp_tree):
     assert abs(table["f_move[9]"][-1]) > 1.0
 
 
+@pytest.mark.parametrize("words", ["temp 0.5 0.5 0.3", "temp 0.5 0.5 0.3 start zero"])
+def test_time_runs_backward(lmp_tree, words):
+    """With and without a new start of the histories."""
+    result = run(lmp_tree, [cluster(words, run="run 200\ntimestep -0.004\nrun 200")])
+    there, back = result.thermo
+    for name in ("f_move[10]", "f_move[11]"):
+        assert abs(there[name][-1] - there[name][0]) > 0.01
+        assert back[name][-1] == pytest.approx(there[name][0], abs=1e-3 if "zero" in words else 1e-8)
+
+
 HELD = """
 units lj
 atom_style full
