@@ -107,8 +107,8 @@ def test_with_reinit_no_atoms_stay_in_their_bodies(lmp_tree, ranks):
     after = "thermo_style custom step pe\nthermo_modify norm no format float %.17g\nrun 5\ngroup one id 1\n"
     after += "displace_atoms one move {} 0 0\nrun 5"
     result = lmp_tree.succeed(two_molecules("molecule reinit no", before, after.format(0.1)), ranks=ranks)
-    before, again = result.thermo
-    assert again["PotEng"][0] == pytest.approx(before["PotEng"][-1], rel=1e-14)
+    first, again = result.thermo
+    assert again["PotEng"][0] == pytest.approx(first["PotEng"][-1], rel=1e-14)
     far = "moved by up to 0.5 since the last run, but with reinit no bodies stay where they are"
     lmp_tree.refuse(two_molecules("molecule reinit no", before, after.format(0.5)), far, ranks=ranks)
 
