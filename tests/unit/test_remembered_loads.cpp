@@ -120,6 +120,32 @@ TEST(RememberedLoads, FreeRotationIsExact)
   }
 }
 
+TEST(RememberedLoads, OrdersOfErrors)
+{
+  // with k loads a position has an error of h^(k + 1)
+  for (const int loads : {2, 3, 4, 5, 6}) {
+    const auto missed = [&](double h) {
+      Follower follower = driven(h, [](double t) {
+        return std::cos(t);
+      });
+      follower.bodies[0].state.velocity[0] = 1.0;
+      follower.control.eps = 1e30;
+      follower.begin();
+      follower.set_step(1e-4 * h);
+      while (follower.t < 10.0) {
+        follower.step();
+        follower.change(
+            {std::min(h, 1.3 * follower.h), std::min(loads, follower.remembered.loads() + 1)});
+      }
+      const BodyState &s = follower.bodies[0].state;
+      return std::fabs(s.velocity[1] - 0.5 * std::sin(s.center[0]));
+    };
+    const double slope = 0.5 * std::log2(missed(0.4) / missed(0.1));
+    EXPECT_GT(slope, loads + 0.5) << loads;
+    EXPECT_LT(slope, loads + 2.0) << loads;
+  }
+}
+
 TEST(RememberedLoads, OneLoadIsNotVelocityVerlet)
 {
   // which has as many rows, and shows the forces velocities of half a step before
@@ -236,6 +262,26 @@ TEST(StepControl, AFailedStepLeavesNoTrace)
             1e-11);    // up to the rounding of several changes of the step
 }
 
+TEST(StepControl, TheErrorFollowsEps)
+{
+  const vector<double> eps = {1e-7, 1e-9, 1e-11, 1e-13};
+  vector<double> errors;
+  vector<long> evaluations;
+  for (const double e : eps) {
+    Following body(e, 0.1);
+    body.run(200.0);
+    errors.push_back(cage(body.scene).missed(body.state()));
+    evaluations.push_back(body.evaluations);
+    EXPECT_LE(body.largest, 1.0);
+    EXPECT_LT(body.repeated, 0.1 * body.steps);
+  }
+  const double slope =
+      std::log(errors.front() / errors.back()) / std::log(eps.front() / eps.back());
+  EXPECT_GT(slope, 0.75);
+  EXPECT_LT(slope, 1.4);
+  EXPECT_GT(evaluations.back(), evaluations.front());
+}
+
 TEST(StepControl, EvaluationsInTestCase1)
 {
   // the largest numbers with which the errors 1e-4, 1e-6, 1e-8 and 1e-10 are reached
@@ -293,4 +339,18 @@ TEST(StepControl, RoundedCoordinatesMakeNoStepShorter)
     steps.push_back(follower.steps);
   }
   EXPECT_LT(steps[2], 50 * steps[0]) << steps[0] << " " << steps[1] << " " << steps[2];
+}
+
+TEST(StepControl, EncountersKeepTheEnergy)
+{
+  // the first 2000 of case 1, with a dozen close encounters; fixed steps of the mean length have an
+  // error ten thousand times as large
+  Following body(1e-13, 0.1);
+  EXPECT_LT(body.run(2000.0), 1e-8);
+  EXPECT_LE(body.largest, 1.0);
+
+  const double mean = body.t / body.steps;
+  Following fixed(1e-13, mean);
+  fixed.control.shortest = fixed.control.longest = mean;
+  EXPECT_GT(fixed.run(2000.0), 1e-6);
 }
