@@ -98,8 +98,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
 
 void FixGearQuat::create_bodies()
 {
-  const int free = ownership.create(args.body_ids(groupbit), read_given_bodies(lmp, args.infile));
-  atoms_are_free = over_ranks(MPI_MAX, free, world);
+  ownership.create(args.body_ids(groupbit), read_given_bodies(lmp, args.infile));
 }
 
 FixGearQuat::~FixGearQuat()
@@ -221,7 +220,6 @@ void FixGearQuat::setup(int vflag)
   tally_virial(vflag, atom->f);
   show_bodies();
   if (first) report_scene(lmp, this, args, fleet, bodies, ownership, sites);
-  atoms_are_free = false;
 }
 
 void FixGearQuat::count_rows()
@@ -406,12 +404,10 @@ double FixGearQuat::compute_vector(int n)
 }
 
 /// The command velocity create gives every atom its own velocity, of which bodies adopt the rigid
-/// part: until then, all degrees of freedom of atoms count.
+/// part in their first run: until then, as for fix rigid, all degrees of freedom of atoms count.
 bigint FixGearQuat::dof(int tgroup)
 {
-  const bool in_run = update->whichflag != 0;
-  if (!in_run && input->narg > 1 && strcmp(input->arg[1], "create") == 0) atoms_are_free = true;
-  if (!in_run && atoms_are_free) return 0;
+  if (update->whichflag == 0 && !step.had_run()) return 0;
   const Comparison found = ownership.count_atoms(group->bitmask[tgroup]);
   if (found.divided && !(told_of_groups & group->bitmask[tgroup])) {
     told_of_groups |= group->bitmask[tgroup];

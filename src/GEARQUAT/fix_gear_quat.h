@@ -130,8 +130,7 @@ class FixGearQuat : public Fix {
   int place = 0;                    ///< number of other fixes whose data of an atom precede in it
   static constexpr int HEAD = 2;    ///< numbers of an atom before its data: their count, and its ID
 
-  int told_of_groups = 0;         ///< their bits: a warning about parts of bodies was given
-  bool atoms_are_free = false;    // their velocities are not yet those of bodies
+  int told_of_groups = 0;    ///< their bits: a warning about parts of bodies was given
   static constexpr int PROJECTED = -1;
   int min_vflag =
       0;    // vflag of the current evaluation in a minimization; or forces were projected

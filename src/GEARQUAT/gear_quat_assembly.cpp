@@ -556,16 +556,6 @@ class Assembly : protected Pointers {
 
 }    // namespace
 
-bool AssembledBody::moves_apart(const double *v, const double *arm_body) const
-{
-  constexpr double APART = 1.0e-3;    // velocities of a data file have few digits
-  double turning_body[3], turning[3], off[3];
-  cross3(state.omega_body, arm_body, turning_body);
-  to_space(axes, turning_body, turning);
-  for (int k = 0; k < 3; ++k) off[k] = v[k] - state.velocity[k] - turning[k];
-  return dot3(off, off) > APART * APART * dot3(v, v);
-}
-
 std::vector<AssembledBody> GearQuat::assemble(LAMMPS *lmp, const GivenBodies &given,
                                               const Extended *extended,
                                               const std::vector<tagint> &ids, const OfSite &act)

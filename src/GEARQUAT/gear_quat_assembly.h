@@ -35,8 +35,6 @@ struct AssembledBody {
   Body body;
   BodyState state;
   double axes[9];    ///< principal, rotation matrix space -> body
-  /// True if the velocity of a site with this place is not that of the body.
-  bool moves_apart(const double *v, const double *arm_body) const;
 };
 
 /// Of a body, an atom in it, and its place: from the center of mass, along the principal axes.

@@ -36,15 +36,6 @@ using namespace GearQuat;
 
 static constexpr double IN_A_STEP = 0.03;
 
-// the part of the fastest stable oscillation that is followed for long; sums of the frequency fade
-// over this many damping times
-
-static constexpr double FOLLOWED = 0.6, MEMORY = 2.0;
-
-// targets that differ by less than this are equal up to rounding
-
-static constexpr double ROUNDING = 1.0e-12;
-
 // LAMMPS' order of a virial is xx yy zz xy xz yz
 
 static constexpr int PLACES[] = {0, 1, 2, 5, 4, 3};
@@ -77,7 +68,6 @@ void Barostat::set_scheme(const Scheme &scheme)
   if (!moves()) return;
   if (scheme.remembers() && !times) times.emplace(false);
   cell.set_scheme(scheme);
-  fastest = fastest_oscillation(scheme);
 }
 
 /* ----------------------------------------------------------------------
@@ -156,9 +146,8 @@ void Barostat::find_target(bigint step, double h)
   const double unit = 1.0 / (force->nktv2p * force->mvv2e);
   for (int k = 0; k < Upper::SIZE; ++k) {
     const double change = asked.stop[k] - asked.start[k];
-    present.target[k] = unit * (asked.start[k] + part * change);
-    present.target_rate[k] = steps > 0 && h != 0.0 ? unit * change / (steps * h) : 0.0;
-    present.period[k] = asked.period[k];
+    present_target[k] = unit * (asked.start[k] + part * change);
+    target_rate[k] = steps > 0 && h != 0.0 ? unit * change / (steps * h) : 0.0;
   }
 }
 
@@ -198,7 +187,7 @@ double Barostat::rate_of_heat() const
   const double mean = mean_of(aim), v = box.volume();
   for (int k = 0; k < Upper::SIZE; ++k)
     if (asked.on[k]) sum += v * (aim[k] - (k < 3 ? mean : 0.0)) * rate[k];
-  sum -= v * mean_of(present.target_rate);
+  sum -= v * mean_of(target_rate);
   const double kt_rate = width != 0.0 ? temperature.line.kt_step / width : 0.0;
   return sum - 0.5 * kt_rate / kt() * twice_kinetic();
 }
@@ -273,7 +262,6 @@ void Barostat::begin_passes(double h)
   if (!moves()) return;
   width = h;
   find_target(update->ntimestep, width);
-  made = present;
 }
 
 void Barostat::pass(const Friction &alpha, double xi, double h)
@@ -444,23 +432,13 @@ void Barostat::begin_run(bool anew, double h)
   tell_freedoms();
   if (anew) refer_to_box(h);
   correction = Upper();    // forces are evaluated in the corrected box
-  since = 0.0;
   request_virial();
 }
 
-const char *Barostat::reason_to_start_anew() const
+void Barostat::add_setting(std::vector<double> &all) const
 {
-  const auto differ = [](double a, double b) {
-    return std::fabs(a - b) > ROUNDING * (std::fabs(a) + std::fabs(b));
-  };
-  for (int k = 0; moves() && k < Upper::SIZE; ++k) {
-    if (differ(present.target[k], made.target[k]) ||
-        differ(present.target_rate[k], made.target_rate[k]))
-      return "the barostat has another target than in the last steps";
-    if (asked.on[k] && made.period[k] != asked.period[k])
-      return "the barostat has another damping time than in the last steps";
-  }
-  return nullptr;
+  for (int k = 0; k < Upper::SIZE; ++k)
+    if (asked.on[k]) all.insert(all.end(), {present_target[k], target_rate[k], asked.period[k]});
 }
 
 /* ----------------------------------------------------------------------
@@ -547,48 +525,6 @@ void Barostat::seed_local(double h, int terms, double xi)
   if (times) times->begin(SECOND_PAPER - 2, FORMER_STEPS * std::fabs(h));
 }
 
-/* ----------------------------------------------------------------------
-   oscillation of the box: with one evaluation of the forces per step, its limit is the same as for
-   an oscillation of the bodies
-------------------------------------------------------------------------- */
-
-double Barostat::frequency() const
-{
-  return along > 0.0 && against > 0.0 ? std::sqrt(against / along) : 0.0;
-}
-
-double Barostat::longest_step() const
-{
-  return frequency() > 0.0 ? 0.5 * FOLLOWED * fastest / frequency() : HUGE_VAL;
-}
-
-void Barostat::note_step(double h)
-{
-  if (!moves()) return;
-  if (times) times->conclude(h);
-  const Upper push = drive(), mass = masses();
-  const double fades = std::exp(-std::fabs(h) / (MEMORY * period()));
-  const bool is_known = last_drive.contracted(last_drive) > 0.0;
-  against *= fades;
-  along *= fades;
-  for (int k = 0; is_known && k < Upper::SIZE; ++k) {
-    against -= mass[k] * (push[k] - last_drive[k]) / h * rate[k];
-    along += mass[k] * rate[k] * rate[k];
-  }
-  last_drive = push;
-  since += std::fabs(h);
-}
-
-/// If the sums represent this run.
-void Barostat::add_rate(double h, std::vector<Rate> &table) const
-{
-  if (!moves() || since < MEMORY * period()) return;
-  const double radians = frequency() * std::fabs(h), followed = FOLLOWED * fastest;
-  table.push_back(
-      {"the angle of the oscillation of the box is", radians, followed,
-       fmt::format("use a Pdamp of {:.4g} or longer", 1.05 * period() * radians / followed)});
-}
-
 /// The box is predicted, but LAMMPS still has the old box.
 void Barostat::refuse_box(const Upper &matrix) const
 {
@@ -611,10 +547,9 @@ void Barostat::refuse_box(const Upper &matrix) const
 
 void Barostat::fields(Fields &v)
 {
-  v(width, made, correction, virial, box, cell, last_drive, against, along);
+  v(width, present_target, target_rate, correction, virial, box, cell);
   if (times) v(*times);
   if (!v.reads()) return;
-  present = made;
   note_rates(width);
 }
 

@@ -43,7 +43,6 @@
 #include "gear_quat_fields.h"
 #include "gear_quat_remembered_loads.h"
 #include "gear_quat_sites.h"
-#include "gear_quat_stability.h"
 #include "gear_quat_startup.h"
 #include "gear_quat_temperature.h"
 
@@ -89,7 +88,8 @@ class Barostat : protected Pointers {
   void refuse_scene() const;
   /// After Temperature::begin_run().  Collective.
   void begin_run(bool anew, double h);
-  const char *reason_to_start_anew() const;
+  /// Adds targets and damping times.
+  void add_setting(std::vector<double> &all) const;
 
   // a step
 
@@ -116,7 +116,10 @@ class Barostat : protected Pointers {
   /// Corrected states are placed; LAMMPS gets the corrected box.
   void end_step();
   /// The step of length h is accepted.
-  void note_step(double h);
+  void note_step(double h)
+  {
+    if (times) times->conclude(h);
+  }
   void keep() { kept = cell; }
   void put_back();
   void rescale(double ratio);
@@ -151,11 +154,8 @@ class Barostat : protected Pointers {
 
   // limits
 
-  double longest_step() const;
   /// The work of the displacement at the faces, or the displacement.
   double error_of_step(bool as_energy, double h) const;
-  /// Adds the row of the oscillation of the box.
-  void add_rate(double h, std::vector<Rate> &table) const;
 
   // the start
 
@@ -202,27 +202,14 @@ class Barostat : protected Pointers {
   CellHistory cell, kept;
   std::optional<RememberedLoads> times;    ///< with a changing step: of the last drives of the box
   double width = 0.0;                      ///< the step of the histories
-  struct Setting {
-    Upper target;         ///< pressures
-    Upper target_rate;    ///< change of these targets with time
-    Upper period;         ///< damping times
-    template <class V> void fields(V &v) { v(target, target_rate, period); }
-  };
-  Setting present, made;        ///< of this step, or at a node, and of the last step
-  double time_of_node = 0.0;    ///< since the present step
+  Upper present_target;                    ///< pressures, of this step
+  Upper target_rate;                       ///< change of these targets with time
+  double time_of_node = 0.0;               ///< since the present step
 
   Upper rate;           ///< G in the present pass, or at a node
   Upper correction;     ///< of M M^-1 by the corrector, in the last step
   Upper local_error;    ///< of M M^-1, of the last step
   Friction of_bodies;
-
-  // the oscillation of the box: its square frequency is the ratio of the means of -W drive'.G and
-  // W G.G, from sums in which old steps fade
-
-  double fastest = 0.0;                 ///< stable oscillation, in radians per step
-  double against = 0.0, along = 0.0;    ///< the sums
-  double since = 0.0;                   ///< time of this run
-  Upper last_drive;
 
   std::string told;    ///< last message of the degrees of freedom
 
@@ -235,7 +222,7 @@ class Barostat : protected Pointers {
   Upper masses() const;
   double mean_of(const Upper &pressures) const;
   void find_target(bigint step, double h);
-  Upper target() const { return present.target + present.target_rate.scaled(time_of_node); }
+  Upper target() const { return present_target + target_rate.scaled(time_of_node); }
   Upper drive() const;
   Upper begin_acceleration(double xi);
   void note_rates(double h);
@@ -249,7 +236,6 @@ class Barostat : protected Pointers {
   void refuse_others() const;
   void refuse_box(const Upper &matrix) const;
   void tell_freedoms();
-  double frequency() const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

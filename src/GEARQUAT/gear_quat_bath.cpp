@@ -25,6 +25,10 @@ using namespace GearQuat;
 
 static constexpr double FEWEST_STEPS = 10.0;
 
+// steps in a damping time of the box, which may oscillate many times in it; with a changing step
+
+static constexpr double FEWEST_OF_BOX = 100.0;
+
 // the strongest friction that bodies follow, times the step, and the part of it that a changing step
 // permits
 
@@ -61,6 +65,7 @@ Bath::Bath(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, c
 {
   if (box.moves() && args.pressure.length > 0) chains.emplace_back(args.pressure.length);
   set_scheme(scheme_of_bath(args.scheme));
+  made = setting();
 }
 
 void Bath::set_scheme(const Scheme &scheme)
@@ -128,7 +133,7 @@ void Bath::begin_run(bool anew, double h)
   if (isokinetic.acts()) isokinetic.begin_run(anew);
   if (isokinetic.acts() || !has_temperature()) return;
   box.refuse_scene();
-  temperature.begin_run(anew, made.line);
+  temperature.begin_run(anew);
   note_friction();
   if (words.damp > 0.0) {
     refuse_bodies();
@@ -200,18 +205,26 @@ void Bath::tell_freedoms()
                   temperature.freedoms[ROTATION]));
 }
 
+/// Targets, damping times and degrees of freedom.
+std::vector<double> Bath::setting() const
+{
+  const auto &line = temperature.line;
+  std::vector<double> found = {line.kt, line.kt_step, temperature.freedoms[TRANSLATION],
+                               temperature.freedoms[ROTATION], words.damp};
+  box.add_setting(found);
+  return found;
+}
+
 const char *Bath::reason_to_start_anew() const
 {
   if (isokinetic.acts() || !acts()) return nullptr;
-  const auto &line = temperature.line;
-  const auto differs = [&line](double a, double b) {
-    return std::fabs(a - b) > ROUNDING * line.kt;
+  const auto now = setting();
+  const auto same = [](double a, double b) {
+    return std::fabs(a - b) <= ROUNDING * (std::fabs(a) + std::fabs(b));
   };
-  if (differs(made.line.kt, line.kt) || differs(made.line.kt_step, line.kt_step) ||
-      !std::equal(made.freedoms, made.freedoms + 2, temperature.freedoms) ||
-      made.damp != words.damp)
-    return "the thermostat has another target, or other degrees of freedom, than in the last steps";
-  return box.reason_to_start_anew();
+  return std::equal(now.begin(), now.end(), made.begin(), same)
+      ? nullptr
+      : "a target, a damping time or the degrees of freedom differ from those of the last steps";
 }
 
 /* ----------------------------------------------------------------------
@@ -398,20 +411,14 @@ void Bath::end_correction(const Integrator &integrator)
   box.end_step();
 }
 
-void Bath::note_setting()
-{
-  const auto &freedoms = temperature.freedoms;
-  made = {temperature.line, {freedoms[TRANSLATION], freedoms[ROTATION]}, words.damp};
-}
-
 void Bath::begin_passes(double h)
 {
   if (isokinetic.acts()) return;
   same_bodies = temperature.is_counted();
   temperature.aim(update->ntimestep);
   temperature.begin();
-  note_setting();
   box.begin_passes(h);
+  made = setting();
 }
 
 void Bath::conclude(double h)
@@ -433,7 +440,7 @@ void Bath::follow_changes(double h)
   const double of_box = box.twice_kinetic();
   temperature.count();
   temperature.sum_present();
-  note_setting();
+  made = setting();
   for (int c = 0; c < thermostats; ++c)
     chains[c].join(before[c], target_of(c, 0.0, h), twice_of(c));
   heat.add(0.5 * (of_box - box.twice_kinetic()));
@@ -465,11 +472,9 @@ void Bath::rescale(double ratio)
 
 double Bath::longest_step() const
 {
-  double longest = box.longest_step();
+  const double longest = box.moves() ? box.period() / FEWEST_OF_BOX : HUGE_VAL;
   if (thermostats == 0) return longest;
-  const double strongest = strongest_friction();
-  if (strongest > 0.0) longest = std::min(longest, SAFE * STRONGEST / strongest);
-  return std::min(longest, words.damp / FEWEST_STEPS);
+  return std::min({longest, SAFE * STRONGEST / strongest_friction(), words.damp / FEWEST_STEPS});
 }
 
 /// The effect of the errors of the chains in this step on bodies in thermal motion: an error d of
@@ -499,7 +504,6 @@ std::vector<Rate> Bath::rates(double h) const
   if (thermostats > 0)
     table.push_back({"the friction of the thermostat is", found, STRONGEST,
                      fmt::format("use a damping time of {:.4g} or longer", period)});
-  box.add_rate(h, table);
   return table;
 }
 
@@ -667,8 +671,5 @@ void Bath::fields(Fields &v)
   if (isokinetic.acts() || !acts()) return;
   v(chains, made, temperature);
   if (box.moves()) v(box, heat);
-  if (!v.reads()) return;
-  temperature.line = made.line;
-  std::copy_n(made.freedoms, 2, temperature.freedoms);
-  note_friction();
+  if (v.reads()) note_friction();
 }

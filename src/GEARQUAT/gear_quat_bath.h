@@ -32,6 +32,7 @@
 #include "gear_quat_arguments.h"
 #include "gear_quat_barostat.h"
 #include "gear_quat_history.h"
+#include "gear_quat_stability.h"
 #include "gear_quat_temperature.h"
 
 #include <array>
@@ -149,13 +150,8 @@ class Bath : protected Pointers {
   int values_of_heat = 0;
   CorrectorCoefficients::Array coefficients_of_heat;    ///< of a first-order equation
 
-  struct Setting {    ///< of a step
-    Temperature::Line line;
-    double freedoms[2], damp;
-    template <class V> void fields(V &v) { v(line, freedoms, damp); }
-  };
-  Setting made = {};          ///< of the last step
-  bool same_bodies = true;    ///< no insertion or removal in this step
+  std::vector<double> made;    ///< setting() of the last step
+  bool same_bodies = true;     ///< no insertion or removal in this step
   enum { OF_BOX = 2 };
   double xi[3] = {};    ///< xi_1 of the chains
   Friction of_all;      ///< of a body without masks or a flow, in the current pass
@@ -172,7 +168,7 @@ class Bath : protected Pointers {
   double twice_of(int chain) const;
   ChainTarget target_of(int chain, double steps_ahead, double h) const;
   double strongest_friction() const;
-  void note_setting();
+  std::vector<double> setting() const;
   void refuse_bodies() const;
   void tell_freedoms();
   template <class Act> void for_moved(Act act);

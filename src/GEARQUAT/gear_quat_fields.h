@@ -23,7 +23,7 @@ class Fields {
  public:
   using Numbers = std::vector<double>;
   static constexpr double MAGIC = 0x6765617271756174;    ///< "gearquat"
-  static constexpr double FORMAT = 11;
+  static constexpr double FORMAT = 12;
 
   /// To write.
   Fields() = default;

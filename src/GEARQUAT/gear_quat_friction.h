@@ -115,9 +115,6 @@ struct Friction {
   double rotation = 0.0;
   bool implicit = false;    ///< residuals are solved for the friction that they change
 
-  /// False without any.
-  bool acts() const { return damping.m != Upper().m || rotation != 0.0; }
-
   Friction() = default;
   Friction(const Multipliers &alpha) :
       damping(Upper::one().scaled(alpha.translation)), rotation(alpha.rotation)

@@ -5,8 +5,8 @@
 
 #include "gear_quat_given_bodies.h"
 
-#include "gear_quat_math.h"
 #include "gear_quat_ranks.h"
+#include "gear_quat_shapes.h"
 
 #include "atom.h"
 #include "comm.h"

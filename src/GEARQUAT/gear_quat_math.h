@@ -188,33 +188,11 @@ template <class T> GEAR_QUAT_INLINE void to_space(const T *a, const T *body, T *
   space[2] = a[2] * body[0] + a[5] * body[1] + a[8] * body[2];
 }
 
-/// out = A^T t A, a tensor (row-major) in space from its components in the body.
-inline void tensor_to_space(const double a[9], const double *t, double *out)
-{
-  for (int n = 0; n < 9; ++n) {
-    out[n] = 0.0;
-    for (int i = 0; i < 9; ++i) out[n] += a[i / 3 * 3 + n / 3] * t[i] * a[i % 3 * 3 + n % 3];
-  }
-}
-
 /// Project q onto |q| = 1, Eq. 3.
 inline void project_norm(double *q)
 {
   const double factor = 1.0 / std::sqrt(dot4(q, q));
   for (int i = 0; i < 4; ++i) q[i] *= factor;
-}
-
-/// The rotation about the z axis by an angle, and the inverse; the angle is in (-pi, pi].
-inline void quaternion_about_z(double angle, double *q)
-{
-  q[0] = q[1] = 0.0;
-  q[2] = std::sin(0.5 * angle);
-  q[3] = std::cos(0.5 * angle);
-}
-
-inline double angle_about_z(const double *q)
-{
-  return q[3] < 0.0 ? 2.0 * std::atan2(-q[2], -q[3]) : 2.0 * std::atan2(q[2], q[3]);
 }
 
 /* ---------------------------------------------------------------------- */

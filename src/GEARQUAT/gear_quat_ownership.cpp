@@ -66,10 +66,10 @@ void Ownership::clear(bool with_extended)
   for (size_t i = 0; i < assigned.size(); ++i) set_arrays(i);
 }
 
-bool Ownership::create(const std::vector<tagint> &ids, const GivenBodies &given)
+void Ownership::create(const std::vector<tagint> &ids, const GivenBodies &given)
 {
   clear();
-  return add(ids, given, false);
+  add(ids, given, false);
 }
 
 void Ownership::count()
@@ -88,7 +88,7 @@ void Ownership::note_box()
   last_box.insert(last_box.end(), domain->boxlo, domain->boxlo + 3);
 }
 
-bool Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh)
+void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh)
 {
   std::vector<int> atoms;
   for (int i = 0; i < atom->nlocal; ++i)
@@ -97,13 +97,11 @@ bool Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
   const bool any_extended = records.any(atoms);
   if (any_extended && !records.has_records()) records.reset(true, (int) assigned.size());
 
-  bool free = false;
   const auto act = [&](const AssembledBody &one, int i, const double *arm_body) {
     assigned[i].id = one.body.id;
     assigned[i].owner = one.owner;
     assigned[i].mass = mass_of(i);
     std::copy_n(arm_body, 3, assigned[i].arm);
-    free = free || one.moves_apart(atom->v[i], arm_body);
     if (any_extended) records.attach(i, mass_of(i), one.state.q);
   };
   for (const auto &one : assemble(lmp, given, any_extended ? &records : nullptr, ids, act)) {
@@ -114,7 +112,6 @@ bool Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
     bodies.change_state(ibody) = one.state;
   }
   count();
-  return free;
 }
 
 void Ownership::recreate()

@@ -75,11 +75,10 @@ class Ownership : protected Pointers {
 
   // life cycle, all collective
 
-  /// Builds all bodies from the atoms; ids: body of every owned atom, 0 for none.  True if some atoms
-  /// on this rank do not move as rigid bodies.
-  bool create(const std::vector<tagint> &ids, const GivenBodies &given);
+  /// Builds all bodies from the atoms; ids: body of every owned atom, 0 for none.
+  void create(const std::vector<tagint> &ids, const GivenBodies &given);
   /// Builds more bodies, from atoms that are in none.  fresh: in a step, without histories.
-  bool add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh);
+  void add(const std::vector<tagint> &ids, const GivenBodies &given, bool fresh);
   /// Rebuilds the same bodies from the atoms' present masses, positions and velocities.  Ends the run
   /// if image flags or another box than the last one have torn or changed a body.
   void recreate();

@@ -102,7 +102,6 @@ class Report : protected Pointers {
   enum { POINT, LINEAR, SPHERICAL, SYMMETRIC, ASYMMETRIC, PLANAR, TOPS };
   enum { BODIES = TOPS, FREEDOMS, OFF_CENTER, EXTENDED, OF_GHOSTS, COUNTS };
   int top_of(const RigidBody &rigid) const;
-  std::string settings() const;
   std::vector<double> labels(const Fleet &fleet) const;
   std::string exclude_own() const;
   bool meets_itself() const;
@@ -120,22 +119,6 @@ int Report::top_of(const RigidBody &rigid) const
   const bool high = i[2] - i[1] < LINEAR_FRACTION * i[2];
   if (low && high) return SPHERICAL;
   return low || high ? SYMMETRIC : ASYMMETRIC;
-}
-
-/// Settings of the integration.
-std::string Report::settings() const
-{
-  const Scheme &scheme = args.scheme;
-  if (scheme.remembers())
-    return fmt::format("  formulation {}, at most {} remembered loads\n",
-                       word_of(scheme.formulation), MOST_LOADS);
-  const std::string values = args.automatic_values ? "values auto"
-                                                   : fmt::format("{} values", scheme.values());
-  const std::string passes = scheme.momentum()
-      ? ""
-      : fmt::format(" {} pass{},", scheme.passes, scheme.passes == 1 ? "" : "es");
-  return fmt::format("  formulation {}, {},{} corrector {}\n", word_of(scheme.formulation), values,
-                     passes, scheme.tuned() ? "tuned" : "gear");
 }
 
 /// The title and a row for each effect.  Collective.
@@ -163,7 +146,6 @@ std::string Report::effects() const
   std::string text = fmt::format("Fix gear/quat {}: {} bodies of ", fix->id, count[BODIES]);
   if (fewest != most[1]) text += fmt::format("{} to ", fewest);
   text += fmt::format("{} sites, {} degrees of freedom\n", most[1], count[FREEDOMS]);
-  text += settings();
 
   const auto row = [&](const char *name, bool on, const std::string &reason) {
     text += fmt::format("  {:<20} {:<3}  {}\n", name, on ? "on" : "off", reason);

@@ -33,6 +33,26 @@ void GearQuat::quaternion_from_matrix(const double a[9], double *q)
   for (int i = 0; i < 4; ++i) q[i] = norm * candidates[largest][i];
 }
 
+void GearQuat::tensor_to_space(const double a[9], const double *t, double *out)
+{
+  for (int n = 0; n < 9; ++n) {
+    out[n] = 0.0;
+    for (int i = 0; i < 9; ++i) out[n] += a[i / 3 * 3 + n / 3] * t[i] * a[i % 3 * 3 + n % 3];
+  }
+}
+
+void GearQuat::quaternion_about_z(double angle, double *q)
+{
+  q[0] = q[1] = 0.0;
+  q[2] = std::sin(0.5 * angle);
+  q[3] = std::cos(0.5 * angle);
+}
+
+double GearQuat::angle_about_z(const double *q)
+{
+  return q[3] < 0.0 ? 2.0 * std::atan2(-q[2], -q[3]) : 2.0 * std::atan2(q[2], q[3]);
+}
+
 void GearQuat::principal_axes(const double tensor[9], double moments[3], double a[9])
 {
   double m[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -24,6 +24,13 @@ namespace LAMMPS_NS::GearQuat {
 /// The unit quaternion of a rotation matrix A (space -> body, row-major), without small divisors.
 void quaternion_from_matrix(const double a[9], double *q);
 
+/// out = A^T t A, a tensor (row-major) in space from its components in the body.
+void tensor_to_space(const double a[9], const double *t, double *out);
+
+/// The rotation about the z axis by an angle, and the inverse; the angle is in (-pi, pi].
+void quaternion_about_z(double angle, double *q);
+double angle_about_z(const double *q);
+
 /// The unit quaternion of a rotation by a vector, in radians.
 void quaternion_of_turn(const double *turn, double *q);
 

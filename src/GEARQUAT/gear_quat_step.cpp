@@ -313,6 +313,7 @@ Step::Settings Step::settings() const
   const bool any_temp = temp.damp > 0.0;
   return {(double) scheme.formulation,
           (double) scheme.values(),
+          (double) scheme.tuned(),
           (double) scheme.compensate,
           (double) scheme.remembers(),
           (double) args.isokinetic,
@@ -323,7 +324,6 @@ Step::Settings Step::settings() const
               : temp.is_random() ? 3.0
                                  : 1.0 + temp.separate,
           box.any() ? 1.0 + box.length : 0.0,
-          (double) scheme.tuned(),
           (double) args.states("corrector"),
           (double) started};
 }
@@ -332,12 +332,12 @@ Step::Settings Step::settings() const
 std::vector<std::string> Step::other_settings(const Settings &mine) const
 {
   static constexpr char BOX[] = "iso, aniso, tri, x, y, z, xy, xz, yz or couple";
-  constexpr const char *KEYWORDS[TUNED] = {"formulation", "values", "compensate", "tolerance",
-                                           "isokinetic",  "temp",   BOX,          "tchain",
-                                           "thermostat",  "pchain"};
+  constexpr const char *KEYWORDS[STATES_CORRECTOR] = {
+      "formulation", "values", "corrector", "compensate", "tolerance", "isokinetic",
+      "temp",        BOX,      "tchain",    "thermostat", "pchain"};
   if (of_file[FORMULATION] != mine[FORMULATION]) return {KEYWORDS[FORMULATION]};
   std::vector<std::string> others;
-  for (int n = VALUES; n < TUNED; ++n)
+  for (int n = VALUES; n < STATES_CORRECTOR; ++n)
     if (of_file[n] != mine[n] && (n < TCHAIN || (of_file[n] != 0.0 && mine[n] != 0.0)))
       others.emplace_back(KEYWORDS[n]);
   return others;
@@ -373,32 +373,21 @@ void Step::adopt_scheme(Fields &file)
 
 bool Step::read(Fields &file)
 {
-  const Settings mine = settings();
-  const auto others = other_settings(mine);
+  const auto others = other_settings(settings());
   if (others.empty()) {
     started = of_file[STARTED] != 0.0;
     fields(file);
     if (!file.is_complete()) return false;
     // the number of values belongs to a corrector that this command does not state
-    if (of_file[STATES_CORRECTOR] != 0.0 && mine[STATES_CORRECTOR] == 0.0) edge_rate = 0.0;
+    if (of_file[STATES_CORRECTOR] != 0.0 && !args.states("corrector")) edge_rate = 0.0;
     if (length() != 0.0) make_integrator();
   }
-  if (comm->me != 0) return true;
-  const auto corrector = [](bool tuned) {
-    return tuned ? "tuned" : "gear";
-  };
-  if (started)
+  if (started && comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat {}: histories of the restart file go on{}\n", fix->id,
                    tolerance ? ""
                              : fmt::format(" with values {}, corrector {}", scheme().values(),
-                                           corrector(scheme().tuned())));
-  if (started && of_file[TUNED] != mine[TUNED])
-    error->warning(
-        FLERR,
-        "Fix gear/quat: the restart file was written with corrector {}; its histories go "
-        "on with corrector {}",
-        corrector(of_file[TUNED] != 0.0), corrector(scheme().tuned()));
-  if (of_file[STARTED] != 0.0 && !others.empty())
+                                           scheme().tuned() ? "tuned" : "gear"));
+  if (of_file[STARTED] != 0.0 && !others.empty() && comm->me == 0)
     error->warning(
         FLERR,
         "Fix gear/quat: the restart file was written with other settings of {}; poses and "

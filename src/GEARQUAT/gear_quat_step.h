@@ -141,7 +141,7 @@ class Step : protected Pointers {
   /// are adopted, if histories can continue with them.
   void adopt_scheme(Fields &file);
   /// The histories of the file have arrived.  If they do not fit this command, histories start
-  /// again, and rank 0 prints a message, as it does if they continue with another corrector.
+  /// again, and rank 0 prints a message.
   /// False if the file is damaged.
   bool read(Fields &file);
 
@@ -170,9 +170,9 @@ class Step : protected Pointers {
   int vflag_of_step = 0;           ///< LAMMPS' vflag when the step began
   std::map<tagint, Mask> masks;    ///< of the command, by the IDs of bodies
 
-  /// Settings in a restart file: histories continue only if the keywords before TUNED are the same;
-  /// from TCHAIN on, where they are off (0) they may differ.
-  static constexpr int FORMULATION = 0, VALUES = 1, TOLERANCE = 3, TCHAIN = 7, TUNED = 10,
+  /// Settings in a restart file: histories continue only if those before STATES_CORRECTOR are the
+  /// same; from TCHAIN on, where they are off (0) they may differ.
+  static constexpr int FORMULATION = 0, VALUES = 1, TUNED = 2, TOLERANCE = 4, TCHAIN = 8,
                        STATES_CORRECTOR = 11, STARTED = 12, SETTINGS = 13;
   using Settings = std::array<double, SETTINGS>;
   Settings of_file = {};

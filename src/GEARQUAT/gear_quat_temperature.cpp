@@ -44,13 +44,10 @@ Temperature::Temperature(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
 {
 }
 
-void Temperature::begin_run(bool anew, const Line &made)
+void Temperature::begin_run(bool anew)
 {
   if (anew && start == 0.0) find_start();
-  if (update->nsteps > 0 || made.kt == 0.0)
-    aim(update->ntimestep);
-  else
-    line = made;
+  if (update->nsteps > 0 || line.kt == 0.0) aim(update->ntimestep);
   count();
   sum_present();
 }
@@ -313,7 +310,7 @@ void Temperature::tell_once(std::string &last, const std::string &message) const
 void Temperature::fields(Fields &v)
 {
   double found = start;
-  v(found);
+  v(found, line, freedoms);
   if (v.reads() && start == 0.0) start = stop = found;    // no keyword states one
 }
 

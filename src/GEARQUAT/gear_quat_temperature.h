@@ -66,9 +66,9 @@ class Temperature : protected Pointers {
   Temperature(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, const ThermostatWords &words,
               const PressureWords &pressure);
 
-  /// Counts and sums.  made: the target of the last step; a run without steps keeps it.  anew: there
-  /// are no histories.  Collective.
-  void begin_run(bool anew, const Line &made);
+  /// Counts and sums.  A run without steps keeps the last target.  anew: there are no histories.
+  /// Collective.
+  void begin_run(bool anew);
   /// The target of that step becomes the present one.
   void aim(bigint step);
   /// For a chain, a number of steps of h ahead.

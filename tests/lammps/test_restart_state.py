@@ -127,6 +127,7 @@ def test_restarts_on_several_ranks_and_ranks_agree(lmp_tree):
 # --- other settings -------------------------------------------------------------------------------
 
 NEW = "written with other settings of {}; poses"
+CHANGED = "a target, a damping time or the degrees of freedom differ from those of the last steps"
 #: words of the run that writes a file and of the run that reads it, and what the log says
 OTHERS = [
     ("values 6 compensate yes", "values 8", "with other settings of values, compensate; poses"),
@@ -139,25 +140,25 @@ OTHERS = [
     (TEMP, f"{TEMP} thermostat separate", NEW.format("thermostat")),
     (TEMP, f"{TEMP} tchain 4", NEW.format("tchain")),
     (TEMP, "", NEW.format("temp")),
-    (TEMP, "temp 0.7 0.7 0.9", "the thermostat has another target"),
-    (f"{TEMP} tolerance 1e-9", "temp 0.9 0.9 0.8 tolerance 1e-9", "the thermostat has another target"),
+    (TEMP, "temp 0.7 0.7 0.9", CHANGED),
+    (f"{TEMP} tolerance 1e-9", "temp 0.9 0.9 0.8 tolerance 1e-9", CHANGED),
     (f"aniso 0.3 0.3 1.0 {TEMP}", f"iso 0.3 0.3 1.0 {TEMP}", "iso, aniso, tri, x, y, z, xy, xz, yz or couple"),
     (f"iso 0.3 0.3 1.0 {TEMP}", f"iso 0.3 0.3 1.0 {TEMP} pchain 1", NEW.format("pchain")),
-    (f"iso 0.3 0.3 1.0 {TEMP}", f"iso 0.3 0.3 0.6 {TEMP}", "the barostat has another damping time than in the last steps"),
+    (f"iso 0.3 0.3 1.0 {TEMP}", f"iso 0.3 0.3 0.6 {TEMP}", CHANGED),
     ("force 1 off on on", "force 2 off on on", "turn off other components than in the run that wrote"),
-    ("corrector gear values 8", "corrector tuned values 8", "written with corrector gear; its histories go on with corrector tuned"),
-    ("corrector tuned values 8", "corrector gear values 8", "written with corrector tuned; its histories go on with corrector gear"),
+    ("corrector gear values 8", "corrector tuned values 8", NEW.format("corrector")),
+    ("corrector tuned values 8", "corrector gear values 8", NEW.format("corrector")),
 ]
 
 
 @pytest.mark.parametrize("before, after, said", OTHERS)
 def test_other_settings_than_in_the_file(lmp_tree, before, after, said):
-    """Histories start again, except with another corrector, and a message names the reason; energy is conserved."""
+    """Histories start again, and a message names the reason; energy is conserved."""
     decks = [deck(before, f"run {STEPS}\nwrite_restart one\nrun {MORE}"), deck(after, f"run {MORE}", "one")]
     result = lmp_tree.succeed(one_after_the_other(decks))
     told = result.words.partition("Reading restart file")[2]
     assert said in told
-    assert ("start of order" in told) == ("go on" not in said) or "tolerance" in after
+    assert "start of order" in told or "tolerance" in after
     energies = "PotEng", "f_move[1]", "f_move[2]"
     whole, other = (sum(np.array(table[name]) for name in energies) for table in result.thermo[1:])
     assert other[0] == pytest.approx(whole[0], rel=1e-7)
@@ -226,23 +227,22 @@ NOT_IN_A_FILE = {
     "temperature Temperature": {
         COMMAND: "subtracted stop words",
         OTHERS: "fix bodies",
-        DERIVED: "line freedoms",
         RUN: "constant stated outside of_total count_of mass changes natoms",
         STEP: "twice tensor common wanted sums",
     },
     "bath Bath": {
         COMMAND: "words thermostats values_of_heat",
         OTHERS: "bodies",
-        DERIVED: "made xi of_all",
+        DERIVED: "xi of_all",
         RUN: "at_nodes held",
         STEP: "kept kept_heat coefficients_of_heat same_bodies",
         MESSAGES: "told",
     },
     "barostat Barostat": {
-        COMMAND: "asked fastest id",
+        COMMAND: "asked id",
         OTHERS: "fix bodies sites temperature",
         DERIVED: "rate of_bodies",
-        RUN: "since cell_at_nodes time_of_node present",
+        RUN: "cell_at_nodes time_of_node",
         STEP: "local_error kept",
         MESSAGES: "told",
     },

@@ -19,7 +19,7 @@ def ends_of(lmp, runs, words, ranks=1, **settings):
 
 
 @pytest.mark.parametrize(
-    "words", ["", "formulation second", f"formulation first {TEMP}", TEMP, f"{TEMP} tolerance 1e-9", "tolerance 1e-9"]
+    "words", ["", "formulation second", "formulation first", TEMP, f"{TEMP} tolerance 1e-9", "tolerance 1e-9"]
 )
 def test_between_runs(lmp_tree, words):
     runs = [f"run 40\n{look}run 60" for look in ("", "run 0\n", "run 0\nrun 0\n")]
@@ -49,15 +49,15 @@ def test_a_run_that_ends_before_its_last_step(lmp_tree, words):
     assert 10 < result.thermo[-1]["Step"][-1] < 1000000000
 
 
-@pytest.mark.parametrize("formulation, kind, ranks", [("momentum", "total", 2), ("second", "separate", 1), ("first", "total", 1)])
-def test_inside_a_ramp(lmp_tree, formulation, kind, ranks):
+@pytest.mark.parametrize("kind, ranks", [("total", 2), ("separate", 1)])
+def test_inside_a_ramp(lmp_tree, kind, ranks):
     runs = [
         f"run 40 {SPAN}\n{look}run 60 {SPAN}" for look in ("", "run 0\n", f"{AGAIN}\n", f"run 0 {SPAN}\n")
     ]
     runs.append(f"run 40 upto {SPAN}\nrun 0\nrun 100 upto {SPAN}")
-    ends, result = ends_of(lmp_tree, runs, f"formulation {formulation} thermostat {kind} {RAMP}", ranks)
+    ends, result = ends_of(lmp_tree, runs, f"thermostat {kind} {RAMP}", ranks)
     assert len(set(ends)) == 1
-    assert "another target" not in result.log
+    assert "a target, a damping time" not in result.log
     # it shows the target and the conserved quantity of the last step
     tables = result.thermo[2:5]
     for column in ("f_move[12]", "f_move[9]"):
@@ -79,7 +79,7 @@ def test_a_restart_behind_it(lmp_tree):
     result = lmp_tree.succeed(one_after_the_other([first, continued(cluster(RAMP, run=again), "half")]))
     whole, again = ((lmp_tree.folder / f"{name}.end").read_text() for name in ("whole", "again"))
     assert whole == again
-    assert "another target" not in result.log
+    assert "a target, a damping time" not in result.log
 
 
 def test_what_was_there_for_a_look_only(lmp_tree):
@@ -98,4 +98,4 @@ def test_what_came_for_good_is_noticed_behind_it(lmp_tree):
     runs = [f"run 40\nfix pull all addforce 0 0 1\n{look}run 60" for look in ("", "run 0\n")]
     ends, result = ends_of(lmp_tree, runs, TEMP)
     assert ends[0] == ends[1]
-    assert result.log.count("other degrees of freedom, than in the last steps; histories are rebuilt") == 2
+    assert result.log.count("the degrees of freedom differ from those of the last steps; histories are rebuilt") == 2
