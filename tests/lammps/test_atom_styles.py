@@ -204,7 +204,7 @@ def test_friction_of_smoothed_particles(lmp_wheel, ranks):
 
 def test_densities_that_advance_twice(lmp_wheel):
     deck = SPH.format(fix="gear/quat", before="fix twice body sph/stationary")
-    lmp_wheel.refuse(deck, "fix twice (sph/stationary) changes single atoms of bodies")
+    lmp_wheel.refuse(deck, "fix twice (sph/stationary) changes atoms of bodies")
     lmp_wheel.succeed(deck.replace("twice body", "twice fluid").replace("fix n fluid sph\n", ""))
 
 
