@@ -63,14 +63,14 @@ REASONS = (
     (r"bodystyle: file ", "bodies listed in a file (poems)", r"`fix poems` with `file` \| not there"),
     (r"fix hmc does not point to fix rigid", "fix hmc", r"fix hmc"),
     (
-        r"fix \S+ \((\S+)\) changes single atoms of bodies",
-        "a fix that moves single atoms of bodies",
-        r"\*STYLE\*",
-    ),
-    (
-        r"\(lb/viscous\) exchanges momentum",
+        r"\(lb/viscous\) changes atoms of bodies",
         "impulses of a lattice Boltzmann fluid",
         r"\*lb/viscous\*\s+- refused",
+    ),
+    (
+        r"fix \S+ \((\S+)\) changes atoms of bodies",
+        "a fix that moves single atoms of bodies",
+        r"\*STYLE\*",
     ),
     (
         r"compiled without the headers for that",
