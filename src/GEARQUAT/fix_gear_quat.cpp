@@ -220,6 +220,16 @@ void FixGearQuat::setup(int vflag)
   tally_virial(vflag, atom->f);
   show_bodies();
   if (first) report_scene(lmp, this, args, fleet, bodies, ownership, sites);
+  loose = loose_atoms();
+}
+
+/// Atoms of the group that are in no body, with keyword mol.  Collective.
+bigint FixGearQuat::loose_atoms() const
+{
+  bigint here = 0;
+  for (int i = 0; !args.mol.empty() && i < atom->nlocal; ++i)
+    here += (atom->mask[i] & groupbit) && !ownership.in_body(i);
+  return args.mol.empty() ? 0 : over_ranks(MPI_SUM, here, world);
 }
 
 void FixGearQuat::count_rows()
@@ -292,6 +302,13 @@ void FixGearQuat::post_run()
   }
   step.end_run();
   driven_box.end_run();
+  const bigint more = loose_atoms() - loose;
+  if (more > 0 && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat {0}: other fixes have inserted {1} atoms into its group that are "
+                   "in no body, so this fix does not move them; a fix that inserts molecules of "
+                   "template {2} as bodies needs its keyword rigid {0}",
+                   id, more, args.mol);
 }
 
 /// Virial of the constraint forces, at the pose at which the forces were evaluated.

@@ -130,6 +130,7 @@ class FixGearQuat : public Fix {
   int place = 0;                    ///< number of other fixes whose data of an atom precede in it
   static constexpr int HEAD = 2;    ///< numbers of an atom before its data: their count, and its ID
 
+  bigint loose = 0;          ///< atoms of the group in no body, when a run began
   int told_of_groups = 0;    ///< their bits: a warning about parts of bodies was given
   static constexpr int PROJECTED = -1;
   int min_vflag =
@@ -139,6 +140,7 @@ class FixGearQuat : public Fix {
   void create_bodies();
   void update_bodies();
   void put_back();
+  bigint loose_atoms() const;
   void resume();
   void begin_step(int, double **, double **);
   void end_step(double **, double **);

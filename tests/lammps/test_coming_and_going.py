@@ -197,6 +197,16 @@ def test_molecules_are_inserted(lmp_tree, ranks, formulation):
     close(ends[0], ends[-1], 1e-9)
 
 
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_molecules_that_nothing_moves_are_noticed(lmp_tree, ranks):
+    """A fix that inserts molecules without its keyword rigid makes no bodies."""
+    commands = INSERT.format(count=3).replace(" rigid move", "") + "run 12"
+    said = "have inserted 9 atoms into its group that are in no body"
+    assert said in lmp_tree.succeed(liquid(lmp_tree, commands, MOL, TEMPLATE), ranks=ranks).words
+    whole = INSERT.format(count=3) + "run 12"
+    assert "in no body" not in lmp_tree.succeed(liquid(lmp_tree, whole, MOL, TEMPLATE), ranks=ranks).words
+
+
 FIELD = """
 variable fx atom -0.5*x
 variable fy atom -1.5*y-0.2*z
