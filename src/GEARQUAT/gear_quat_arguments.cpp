@@ -465,13 +465,17 @@ std::vector<tagint> Arguments::custom_ids(const Selection &selection) const
 
 std::map<tagint, Mask> Arguments::masks_of(const std::vector<tagint> &ids) const
 {
+  constexpr size_t MOST_DIGITS = 18;
   std::map<tagint, Mask> off;
   for (const auto &one : masks) {
     const bool torque = one.stated & torque_off(0);
     const char *key = torque ? "torque" : "force";
     const auto number = (bigint) ids.size();
-    bigint first, last;    // without an Error the function has no message of its own
-    utils::bounds(FLERR, one.range, 1, number, first, last, nullptr);
+    bigint first = 0, last = 0;    // utils::bounds() ends the program at other texts
+    const size_t star = std::min(one.range.find('*'), one.range.size());
+    if (utils::strmatch(one.range, "^\\d*\\*?\\d*$") && star <= MOST_DIGITS &&
+        one.range.size() <= star + 1 + MOST_DIGITS)
+      utils::bounds(FLERR, one.range, 1, number, first, last, nullptr);
     if (first < 1 || first > last || last > number)
       error->all(FLERR,
                  "Fix gear/quat {}: bodies {} are neither a number from 1 to {} nor a range of "

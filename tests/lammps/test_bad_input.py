@@ -67,6 +67,8 @@ ARGUMENTS = {
     "molecule force 1 on on": "force: zflag is missing; required: M xflag yflag zflag",
     "molecule force 1 on on yes": "force: unknown zflag yes (on or off)",
     "molecule force 3 off off off": "force: bodies 3 are neither a number from 1 to 2 nor a range",
+    "molecule force ** off off off": "force: bodies ** are neither a number from 1 to 2 nor a range",
+    "molecule force 99999999999999999999 on on off": "force: bodies 99999999999999999999 are neither",
     "molecule torque 2*1 off off off": "torque: bodies 2*1 are neither a number from 1 to 2",
     "molecule mol some force * on on off": "keyword force cannot be used with mol: the numbers of bodies",
     "molecule isokinetic total": "keyword isokinetic requires formulation first: its constraint",
