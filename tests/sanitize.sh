@@ -149,7 +149,7 @@ part_valgrind() {
   done
   for words in "formulation first" "tolerance 1e-8" "formulation first isokinetic separate" \
     "values 12 corrector gear compensate yes force 1 off off off torque 2* off off on" \
-    "start zero project no corrector gear c0 velocity report no"; do
+    "formulation second start zero project no corrector gear c0 velocity report no"; do
     check "fields $words" "$ROOT/examples/fields" '^Total wall time' "${leaks[@]}" "$tree/lmp" -in in.fields -log none \
       -var steps 20 -var every 5 -var words "$words"
   done
