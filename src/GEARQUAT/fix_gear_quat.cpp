@@ -186,8 +186,9 @@ void FixGearQuat::setup_pre_neighbor()
   count_rows();
 }
 
-/// Atoms are where bodies have them before forces are evaluated, except in rerun.  Ghost atoms have
-/// been chosen by the places before: with those in the skin of neighbor lists none is missing yet.
+/// Moves atoms back into their bodies before forces are evaluated, except in rerun.  Ghost atoms were
+/// chosen before this move.  If it is shorter than the skin of neighbor lists, they suffice for the
+/// first step, and then the lists are built again.
 void FixGearQuat::put_back()
 {
   const double farthest = sites.farthest();

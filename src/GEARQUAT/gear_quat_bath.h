@@ -3,8 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* What acts on all bodies of a fix together, the last three by a friction that depends on sums over
-   all of them:
+/* Keywords that act on all bodies of a fix together.  The last three act by a friction that depends
+   on sums over all bodies:
 
      keyword langevin      a random step of all momenta between steps (gear_quat_friction.h)
      keyword temp          Nose-Hoover chains (gear_quat_chain.h), driven by the temperature
