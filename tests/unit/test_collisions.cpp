@@ -10,7 +10,7 @@ using namespace Drive;
 
 namespace {
 
-/// The environment may request more: GEARQUAT_COLLISIONS=10000 takes half an hour.
+/// The environment may request more: GEARQUAT_COLLISIONS=10000 takes some minutes.
 int number_of_collisions()
 {
   const char *asked = std::getenv("GEARQUAT_COLLISIONS");
