@@ -8,6 +8,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from matplotlib.ticker import NullFormatter  # noqa: E402
 
 from gearquat_analysis.style import COLOR, STYLE  # noqa: E402
 
@@ -65,6 +66,7 @@ def _curve(axis, curve):
 def _scales(axis, panel):
     if "x" in panel.log:
         axis.set_xscale("log")
+        axis.xaxis.set_minor_formatter(NullFormatter())
     if "y" in panel.log:
         axis.set_yscale("log")
     if panel.xticks:
@@ -107,7 +109,8 @@ def draw(path, panels, columns=None, note="", share_y=False):
                 handles, labels = axis.get_legend_handles_labels()
                 shared |= dict(zip(labels, handles))
         if shared:
-            place = {"loc": "outside upper center", "ncols": 5, "fontsize": 8}
+            columns = 2 if max(map(len, shared)) > 30 else 5
+            place = {"loc": "outside upper center", "ncols": columns, "fontsize": 8}
             figure.legend(shared.values(), shared.keys(), **place)
         if note:
             figure.supxlabel(note, x=0.995, ha="right", fontsize=7, color="#666666")

@@ -186,7 +186,7 @@ def panels(results):
         for curves, x in zip(shown, ([p.evaluations for p in points], [1e3 * p.timing.median for p in points])):
             curves.append(Curve(name, np.array(x, float), errors, color, marker=marker))
     axes = ("force evaluations, start included", "wall time of the run, ms")
-    titles = ("The fix needs fewer evaluations", "and less time for the same error")
+    titles = ("The fix needs fewer evaluations for the same error", "The fix needs less time for the same error")
     error = "error of the center of mass"
     return [Panel(t, x, error, own, "xy", ylim=(1e-13, 1), legend=False) for t, x, own in zip(titles, axes, shown)]
 

@@ -303,7 +303,7 @@ def test_cost_of_a_deck_that_was_not_written_for_it(make_deck, tmp_path):
             return np.linalg.norm(trial.center[-1] - truth.center[-1], axis=1).max()
 
         for row in read(out / "cost.csv"):
-            row["keywords"] = row["keywords"].replace("no keyword", "")
+            row["keywords"] = row["keywords"].replace("default settings", "")
             error, dt, own_dt = (float(row[name]) for name in ("error", "timestep", "own_timestep"))
             recommended = own_dt if row["keep"] == "yes" else dt
             assert f"timestep {evaluate.usable_step(recommended):g}" in result.output

@@ -252,4 +252,4 @@ def test_methods_of_a_deck():
     free, held = (types.SimpleNamespace(takes=lambda _, whether=whether: whether) for whether in (True, False))
     assert methods.methods(free)[0] == methods.DEFAULT == "" and "values 7" in methods.methods(free)
     assert all(method.startswith("formulation first") for method in methods.methods(held))
-    assert methods.named("") == "gear/quat (no keyword)" and methods.named(None) == "your fix"
+    assert methods.named("") == "gear/quat (default settings)" and methods.named(None) == "your fix"

@@ -37,9 +37,10 @@ def _panel(results):
     for name, color in SHOWN.items():
         for curve in sorted(strongest.curves(own.get(name, []), column), key=cost)[:1]:
             line = {"width": 2.0} if name in strongest.OURS else {"line": "-."}
-            shown.append(Curve(name.strip("`"), *curve[:, np.isfinite(curve).all(axis=0)], color, **line))
+            label = "keyword tolerance" if name == scenes.TOLERANCE else name
+            shown.append(Curve(label, *curve[:, np.isfinite(curve).all(axis=0)], color, **line))
     axes = "force evaluations, start included", "error of the center of mass"
-    return Panel("Keyword tolerance needs the fewest evaluations", *axes, tuple(shown), "xy", ylim=(1e-11, 1.0))
+    return Panel("With keyword tolerance, the fix needs the fewest evaluations", *axes, tuple(shown), "xy", ylim=(1e-11, 1.0))
 
 
 def find(results):

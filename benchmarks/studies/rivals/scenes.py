@@ -34,7 +34,7 @@ PASSES = 0.02
 #: tolerance of the reference there; below it, rounding ends the extrapolation
 TIGHT = 1e-14
 #: keys of the fix, beside the names of the other methods
-FIXED, TOLERANCE = "no keyword", "`tolerance`"
+FIXED, TOLERANCE = "default settings", "`tolerance`"
 #: keys of the scenes, and methods, of quick runs
 QUICK = ("case1", "case1-weak", "encounter", "case1-start7")
 QUICK_NAMES = ("DDEABM", "Quinlan–Tremaine 8", "SABA4, 4 stages")

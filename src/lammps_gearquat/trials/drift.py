@@ -113,7 +113,7 @@ def run(inquiry, keywords, dt, steps, timeout, bound=BOUND, balance=False):
     samples = int(steps) // stride
     if samples < evaluate.FEWEST:
         return Drift(reason="no run was long enough", bound=bound)
-    inquiry.budget.say(f"drift of {keywords or ('own fix' if keywords is None else 'no keyword')}, step {dt:g}")
+    inquiry.budget.say(f"drift of {keywords or ('own fix' if keywords is None else 'default settings')}, step {dt:g}")
     try:
         trial = deck.run(keywords, [stride] * samples, dt, timeout, energies=True)
     except LammpsError as error:

@@ -15,9 +15,9 @@ def methods(deck):
 
 def stated(method):
     """A method in a table: the keywords, or a description if there are none."""
-    return "the deck's own" if method is None else method or "no keyword"
+    return "the deck's own" if method is None else method or "default settings"
 
 
 def named(method):
     """A method in words: keywords of fix gear/quat, or None for the deck's own fix."""
-    return "your fix" if method is None else f"gear/quat {method or '(no keyword)'}"
+    return "your fix" if method is None else f"gear/quat {method or '(default settings)'}"
