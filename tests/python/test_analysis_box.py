@@ -4,7 +4,8 @@ density."""
 import numpy as np
 import pytest
 
-from gearquat_analysis import Poses, averages, mapped, open_dump
+from gearquat_analysis import Poses, averages, open_dump
+from gearquat_analysis.box import carried, own_motion
 
 FRAMES, BODIES = 400, 40
 ARM = np.array([0.3, 0.0, 0.0])
@@ -45,10 +46,6 @@ def walk():
     return Walk()
 
 
-def own(poses):
-    return mapped.columns(mapped.own_motion(poses.results), slice(0, BODIES))
-
-
 def displaced(walk):
     return np.concatenate([np.zeros((1, BODIES, 3)), walk.steps.cumsum(axis=0)])
 
@@ -59,10 +56,10 @@ def test_own_motion(walk, tmp_path, names, backend):
     """The box changes with the steps; wrapped positions are followed through the changing box."""
     poses = Poses(open_dump(walk.dump(tmp_path / "a.dump", names)).atoms)
     poses.run(backend=backend, **({"n_workers": 2} if backend == "multiprocessing" else {}))
-    found = own(poses)
+    found = own_motion(poses.results)
     assert np.abs(found - found[0] - displaced(walk)).max() < 1e-9
-    carried = poses.results.center - poses.results.center[0]
-    assert np.abs(carried - displaced(walk)).max() > (0.1 if names == "x y z" else 1.0)
+    moved = poses.results.center - poses.results.center[0]
+    assert np.abs(moved - displaced(walk)).max() > (0.1 if names == "x y z" else 1.0)
 
 
 def test_a_flip_carries_nothing():
@@ -74,9 +71,9 @@ def test_a_flip_carries_nothing():
         for strain in (0.0, 0.02):
             change = np.eye(3) + strain * np.array([[1.0, 0.0, 0.0], [0.7, -1.0, 0.0], [0.2, 0.5, 0.6]])
             after = np.vstack([cell[0], flip @ cell[1:] @ change])
-            assert np.abs(mapped.carried(x, cell, after) - cell[0] - (x - cell[0]) @ change).max() < 1e-11
+            assert np.abs(carried(x, cell, after) - cell[0] - (x - cell[0]) @ change).max() < 1e-11
     doubled = np.vstack([cell[0], 2.0 * cell[1:]])
-    assert np.allclose(mapped.carried(x, cell, doubled), cell[0] + 2.0 * (x - cell[0]))
+    assert np.allclose(carried(x, cell, doubled), cell[0] + 2.0 * (x - cell[0]))
 
 
 def test_diffusion(walk, tmp_path):
@@ -102,7 +99,7 @@ def test_volume_and_density(walk, tmp_path):
 def test_no_volume_of_a_slab_and_no_density_of_a_part(walk, tmp_path):
     slab = Poses(open_dump(walk.dump(tmp_path / "a.dump", boundary="pp pp ss")).atoms).run()
     assert not {"volume", "density"} & {row.name for row in averages.averages(slab)}
-    moved = own(slab)
+    moved = own_motion(slab.results)
     assert np.abs(moved[..., :2] - moved[0, :, :2] - displaced(walk)[..., :2]).max() < 1e-9
     assert np.abs(moved[..., 2] - slab.results.center[..., 2]).max() < 1e-9
     part = Poses(open_dump(walk.dump(tmp_path / "b.dump")).select_atoms("resid 1:10")).run()

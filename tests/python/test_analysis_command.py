@@ -5,7 +5,6 @@ import re
 import shlex
 
 from support import dumps
-import MDAnalysis
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -108,6 +107,11 @@ def test_poses_are_those_of_the_fixs_own_array(water):
         assert found == pytest.approx(expected, abs=1e-12 * np.abs(expected).max()), name
 
 
+#: units of length and time in Å and ps (manual of LAMMPS, command units)
+SIZES = {"lj": (1.0, 1.0), "real": (1.0, 1e-3), "metal": (1.0, 1.0), "si": (1e10, 1e12), "cgs": (1e8, 1e12)}
+SIZES |= {"electron": (0.529177, 1e-3), "micro": (1e4, 1e6), "nano": (10.0, 1e3)}
+
+
 def test_units_are_those_of_lammps():
     """The factors agree with LAMMPS."""
     lmp = open_library()
@@ -115,6 +119,7 @@ def test_units_are_those_of_lammps():
         for style, units in UNITS.items():
             lmp.commands_list(["clear", f"units {style}"])
             assert lmp.extract_global("mvv2e") == units.energy, style
+            assert (units.angstrom, units.ps) == pytest.approx(SIZES[style], rel=1e-5), style
     finally:
         lmp.close()
 
@@ -199,21 +204,6 @@ def test_an_analysis_of_another_dump_is_kept(tmp_path):
     assert "out has bodies.csv of unknown settings: another --out" in analyze(path, out).output
 
 
-@pytest.mark.filterwarnings("ignore:::MDAnalysis")
-def test_files_of_others_are_not_written_over(tmp_path):
-    """Neither the trajectory nor its topology is overwritten; files of the same analysis are."""
-    path = dumps.write(tmp_path / "made.dump", dumps.Motion([3]), np.arange(8.0))
-    options = ["--units", "real", "--timestep", "1", "--convert", tmp_path / "made.dcd"]
-    for name in ("made.dcd", "made.pdb"):
-        (tmp_path / name).write_text("mine")
-        result = analyze(path, tmp_path / "out", *options)
-        assert result.exit_code == 1 and f"{name} exists: another name is required" in result.output
-        assert (tmp_path / name).read_text() == "mine" and not (tmp_path / "out").exists()
-        (tmp_path / name).unlink()
-    for _ in range(2):
-        assert analyze(path, tmp_path / "out", *options).exit_code == 0
-
-
 def test_command_tells_of_uneven_times_and_of_bodies_that_are_not_rigid(tmp_path):
     rows = dumps.Motion([3]).rows(0.0)
     frames = [f"ITEM: TIME\n{time}\n" + dumps.frame(k, rows) for k, time in enumerate((0.0, 1.0, 2.5))]
@@ -225,36 +215,8 @@ def test_command_tells_of_uneven_times_and_of_bodies_that_are_not_rigid(tmp_path
     assert "Warning: there are no diffusion coefficients and correlation times" in result.output
     assert "made.dump: body 1 is not rigid: at step 3" in result.output
     assert (tmp_path / "averages.csv").exists() and not (tmp_path / "correlations.csv").exists()
-    result = analyze(path, tmp_path / "one", "--frames", ":1")
-    assert "1 frame of 1 body was read" in result.output
-
-
-@pytest.mark.filterwarnings("ignore:::MDAnalysis")
-@pytest.mark.parametrize(
-    ("suffix", "wrap"), [("dcd", False), ("xtc", True), ("xyz", True), ("pdb", False)]
-)
-def test_command_converts(water, tmp_path, suffix, wrap):
-    """Read again by MDAnalysis: the same molecules, whole, in the same frames."""
-    path = tmp_path / f"water.{suffix}"
-    options = ["--units", "real", "--timestep", "1", *(["--wrap"] if wrap else [])]
-    options += ["--convert", path, "--frames", "::2"]
-    result = analyze(water / "water.dump", tmp_path, *options)
-    assert result.exit_code == 0, result.output
-    topology = path if suffix in ("xyz", "pdb") else path.with_suffix(".pdb")
-    other = MDAnalysis.Universe(str(topology), str(path))
-    universe = open_dump(water / "water.dump")
-    assert len(other.trajectory) == 3 and other.atoms.names[:3].tolist() == ["O", "H", "H"]
-    edge = universe.trajectory[0].data["box"][0, 0]
-    for k in range(3):
-        x, found = universe.trajectory[2 * k].data["x"], other.trajectory[k].positions
-        apart = found - x
-        if wrap:
-            # by whole edges, the same for all sites of a molecule
-            images = np.round(apart / edge)
-            assert (images == np.repeat(images[::3], 3, axis=0)).all()
-            apart = apart - images * edge
-            assert np.abs(found.reshape(-1, 3, 3).mean(axis=1) / edge - 0.5).max() < 0.5001
-        assert np.abs(apart).max() < 0.0101
+    result = analyze(path, tmp_path / "one", "--frames", ":1", "--timestep", "7")
+    assert "1 frame of 1 body was read" in result.output and "--timestep is not used" in result.output
 
 
 def test_command_says_when_frames_are_too_far_apart(tmp_path):
@@ -272,13 +234,8 @@ def test_command_says_when_frames_are_too_far_apart(tmp_path):
         (["--select", "foo 99"], "--select 'foo 99': Unknown selection token: 'foo'"),
         (["--reference", "nofile"], "--reference nofile: 'principal', 'first' or a file with x"),
         (["--timestep", "0"], "'--timestep': 0.0 is not in the range x>0"),
-        (["--wrap"], "--wrap works only with --convert"),
         (["--frames", "99:"], "no frame is selected"),
         (["--frames", "a:b"], "START:STOP:STEP is required"),
-        (
-            ["--convert", "poses.nonsense", "--units", "lj", "--timestep", "1"],
-            "MDAnalysis writes no trajectories in this format; one such as dcd, xtc,",
-        ),
         (["--body", "i_body"], "(--body), or give a data file with molecules (--data)"),
         (["--potential", "c_pe"], "no column c_pe"),
     ],
@@ -294,12 +251,11 @@ def test_the_page_runs_as_it_stands(water, tmp_path, monkeypatch):
     """The commands and the Python of doc/analysis.md."""
     page = (ROOT / "doc" / "analysis.md").read_text()
     lines = re.findall("^    (gearquat analyze .*)$", page, re.M)
-    assert len(lines) == 2
+    assert len(lines) == 1
     monkeypatch.chdir(tmp_path)
     (tmp_path / "water.dump").symlink_to(water / "water.dump")
     for line in lines:
         result = CliRunner().invoke(main, shlex.split(line)[1:])
         assert result.exit_code == 0, result.output
-    assert (tmp_path / "water.dcd").exists()
     exec(compile(*blocks("../analysis", "python"), "doc/analysis.md", "exec"), {})
     assert len(columns(tmp_path / "poses.csv")) == 50

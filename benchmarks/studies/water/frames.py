@@ -9,7 +9,7 @@ from gearquat_analysis import Poses, open_dump
 from gearquat_analysis.averages import integral_time
 from gearquat_analysis.correlations import lags, mean_square_displacement, orientation_correlation
 from gearquat_analysis.fluctuations import dipole_moments
-from gearquat_analysis.mapped import columns, own_motion
+from gearquat_analysis.box import own_motion
 from gearquat_analysis.units import UNITS
 
 REAL = UNITS["real"]
@@ -49,7 +49,7 @@ def read_motion(dump, model, blocks):
     poses = Poses(universe.atoms).run(start=1)
     results, bodies = poses.results, poses.bodies
     moments = OF_ATOMS[model] * dipole_moments(poses)
-    time, centers = results.time * REAL.ps, columns(own_motion(results), slice(0, len(bodies)))
+    time, centers = results.time * REAL.ps, own_motion(results)
     omega = np.array([np.einsum("bij,bj->bi", bodies.axes_space(q), w) for q, w in zip(results.q, results.omega_space)])
     hot = REAL.energy * np.mean(bodies.moments * omega**2, axis=1) / REAL.boltzmann
     length = len(time) // blocks

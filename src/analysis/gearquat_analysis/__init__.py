@@ -1,7 +1,7 @@
 """Analysis of rigid bodies with MDAnalysis: poses, motion, correlations.
 
-``dump`` reads LAMMPS dumps as universes.  ``poses`` has the analysis Poses, ``correlations`` the mean squares and
-autocorrelations of its results, and ``convert`` trajectories for other viewers.  They use ``bodies`` (assignment of sites to bodies) and ``superposition``.
+``dump`` reads LAMMPS dumps as universes.  ``poses`` has the analysis Poses, and ``correlations`` the mean squares and
+autocorrelations of its results.  They use ``bodies`` (assignment of sites to bodies) and ``superposition``.
 
     from gearquat_analysis import Poses, correlations, open_dump
 

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from .units import UNITS
-from . import correlations, export, mapped
+from . import box, correlations, export
 from .blocks import Estimate, of_series, scatter, widening
 from .bodies import axes_named, axis_groups, equal_moments
 from .diffusion import diffusion
@@ -97,18 +97,12 @@ def _boltzmann(poses):
 
 def dimension(results):
     """2 if no center moves along z and bodies rotate about z only, as in a run of dimension 2; else 3."""
-    moved = np.zeros(3)
-    for k in mapped.rows(results.center):
-        moved = np.maximum(moved, np.abs(results.center[k] - results.center[0]).max(axis=0))
-        if moved[2] > 0.0:
-            return 3
-    if not moved.any():
+    moved = np.ptp(results.center, axis=0).max(axis=0)
+    if moved[2] > 0.0 or not moved.any():
         return 3
     if "omega_space" not in results:
         return 2
-    largest = np.zeros(3)
-    for k in mapped.rows(results.omega_space):
-        largest = np.maximum(largest, np.abs(results.omega_space[k]).max(axis=0))
+    largest = np.abs(results.omega_space).max(axis=(0, 1))
     return 2 if largest[:2].max() <= IN_PLANE * largest[2] else 3
 
 
@@ -120,7 +114,7 @@ def _sums(poses):
     equal = equal_moments(bodies.moments)
     share = equal / equal.sum(axis=1, keepdims=True)
     translation, rotation, total, about = np.empty(frames), np.empty(frames), np.empty(frames), np.empty((frames, 3))
-    for k in mapped.rows(results.velocity):
+    for k in range(frames):
         translation[k] = 2.0 * results.ke_translation[k].sum()
         rotation[k] = 2.0 * results.ke_rotation[k].sum()
         total[k] = energy * np.sum((bodies.mass @ results.velocity[k]) ** 2) / bodies.mass.sum()
@@ -169,7 +163,7 @@ def of_box(poses):
     There is a density only if all atoms of the trajectory are in bodies.
     """
     results, bodies = poses.results, getattr(poses, "bodies", None)
-    if mapped.own_motion(results) is results.center or not poses.periodic.all():
+    if not box.changes(results) or not poses.periodic.all():
         return {}
     volume = np.abs(np.linalg.det(results.cell[:, 1:]))
     if bodies is None or len(bodies.masses) < len(poses.atoms.universe.atoms):
@@ -268,7 +262,7 @@ def _without_groups(q, axis, order):
     axis = np.broadcast_to(axis, (*axis.shape[:-2], number, 3))
     groups = np.array_split(np.arange(number), GROUPS)
     sums = [
-        len(own) * correlations.orientation_correlation(mapped.Part(q, own), axis[..., own, :], order) for own in groups
+        len(own) * correlations.orientation_correlation(q[:, own], axis[..., own, :], order) for own in groups
     ]
     total = np.sum(sums, axis=0)
     return total / number, [(total - part) / (number - len(own)) for part, own in zip(sums, groups)]
@@ -318,7 +312,7 @@ def _fluctuations(run):
 
 def _diffusion(poses, of, dimensions):
     results = poses.results
-    return {f"diffusion coefficient{of}": diffusion(results.time, mapped.own_motion(results), dimensions)}
+    return {f"diffusion coefficient{of}": diffusion(results.time, box.own_motion(results), dimensions)}
 
 
 def _correlation_times(poses, of, _dimensions):

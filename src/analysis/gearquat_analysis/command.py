@@ -1,6 +1,5 @@
 """The command ``gearquat analyze``, also ``python -m gearquat_analysis`` where there is no LAMMPS."""
 
-import resource
 import warnings
 from contextlib import contextmanager
 from pathlib import Path
@@ -8,7 +7,7 @@ from pathlib import Path
 import cloup
 
 from .options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option, progress_bar
-from .units import UNITS, style_of
+from .units import UNITS
 
 
 #: files that the command writes in addition to poses.npy
@@ -37,7 +36,7 @@ def _telling_warnings():
 @command(
     "cd examples/water",
     "lmp -in in.water -var dump 10",
-    "gearquat analyze out.water.dump --units real --timestep 1.0 --convert out.water.dcd",
+    "gearquat analyze out.water.dump --units real --timestep 1.0",
 )
 @cloup.argument("dump", type=FILE, help="Trajectory written by LAMMPS.")
 @cloup.option_group(
@@ -67,7 +66,7 @@ def _telling_warnings():
     cloup.option(
         "--units",
         type=cloup.Choice(UNITS),
-        help="LAMMPS' units, for energies and --convert; not needed if the dump has them (dump_modify units yes).",
+        help="LAMMPS' units, for energies; not needed if the dump has them (dump_modify units yes).",
     ),
     cloup.option(
         "--timestep",
@@ -92,38 +91,24 @@ def _telling_warnings():
     "Output and processes",
     out_option("gearquat-analyze", "tables and pictures"),
     cloup.option("--csv", "as_csv", is_flag=True, help="Also write every pose as text, poses.csv."),
-    cloup.option(
-        "--convert",
-        "converted",
-        type=cloup.Path(dir_okay=False, path_type=Path),
-        help="Also write the trajectory, in Å and ps: .dcd, .xtc, .trr, .nc, .xyz, .pdb, ...",
-    ),
-    cloup.option("--wrap", is_flag=True, help="With --convert, put bodies back into the box."),
     cloup.option("--jobs", type=COUNT, default=1, metavar="N", help="Number of processes that read the dump."),
 )
 @failing_clearly(ValueError)
 @_telling_warnings()
-def analyze(dump, out, frames, rdf, converted, wrap, as_csv, **options):
-    """Analyze rigid bodies in a LAMMPS dump, and convert it (--convert).
+def analyze(dump, out, frames, rdf, as_csv, **options):
+    """Analyze rigid bodies in a LAMMPS dump.
 
     DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities.  The command writes poses.npy (poses and energies, by frame and body),
     bodies.csv, totals.csv, correlations.csv, and averages.csv: temperatures, diffusion and rotational
     correlation times with standard errors, which it also prints.  It draws pictures of the last three files.
     """
     from . import pictures, report
-    from .convert import require_format, written_by
     from .folder import Folder
 
-    if converted:
-        require_format(converted)
-    if wrap and not converted:
-        raise ValueError("--wrap works only with --convert")
     asked = {name: options[name] for name in DECIDE}
     asked |= {"frames": [frames.start, frames.stop, frames.step], "rdf": [list(pair) for pair in rdf]}
     folder = Folder(out, dump, asked, LEAVES)
-    if converted:
-        folder.require_free(written_by(converted))
-    poses = _run(dump, out, frames, converted, options)
+    poses = _run(dump, out, frames, options)
     folder.fill(cloup.echo)
     report.write_bodies(out / "bodies.csv", poses)
     totals = report.write_totals(out / "totals.csv", poses)
@@ -133,39 +118,20 @@ def analyze(dump, out, frames, rdf, converted, wrap, as_csv, **options):
     _correlate(out, poses)
     if rdf:
         _distribute(out, poses, rdf, frames)
-    if converted:
-        folder.note(_convert(poses, converted, wrap, frames))
     cloup.echo(report.summary(poses, totals))
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    memory += options["jobs"] * (resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
-    cloup.echo(
-        f"The analysis used at most {memory:.0f} MB of memory.  Tables and pictures are in {out.resolve()}"
-    )
+    cloup.echo(f"Tables and pictures are in {out.resolve()}")
 
 
 def _bar(what, unit):
     return lambda iterable, total=None: progress_bar(iterable, total=total, desc=what, unit=unit)
 
 
-def _settle(trajectory, converted, options):
-    """Raise ValueError if units or times are missing for --convert; report an unused --timestep and missing times."""
-    from .convert import has_times
-
-    timestep = options["timestep"]
-    if converted and not style_of(trajectory, options["units"]):
-        raise ValueError(
-            "--convert needs the units of the dump: give --units, or write the dump with dump_modify units yes"
-        )
+def _settle(trajectory, timestep):
+    """Report an unused --timestep and missing times."""
     if trajectory.timed and timestep is not None:
         cloup.echo("The dump has times of its own; --timestep is not used.")
-    if trajectory.timed or timestep is not None:
-        return
-    if converted and has_times(converted):
-        raise ValueError(
-            f"--convert {converted} needs the times of the frames: give --timestep, or write the dump with"
-            " dump_modify time yes"
-        )
-    cloup.echo("Neither the dump nor --timestep gives times: numbers of steps are used instead.")
+    if not trajectory.timed and timestep is None:
+        cloup.echo("Neither the dump nor --timestep gives times: numbers of steps are used instead.")
 
 
 def _points(option, path, others=""):
@@ -182,14 +148,14 @@ def _points(option, path, others=""):
         raise ValueError(f"{option} {path}: {required}: {error}") from error
 
 
-def _run(dump, out, frames, converted, options):
+def _run(dump, out, frames, options):
     from MDAnalysis.exceptions import SelectionError
 
     from . import Poses, open_dump
 
     names = ("data", "atom_style", "body", "potential")
     universe = open_dump(dump, timestep=options["timestep"], **{name: options[name] for name in names})
-    _settle(universe.trajectory, converted, options)
+    _settle(universe.trajectory, options["timestep"])
     try:
         atoms = universe.select_atoms(options["select"])
     except SelectionError as error:
@@ -203,26 +169,20 @@ def _run(dump, out, frames, converted, options):
         reference = _points("--reference", reference, "'principal', 'first' or ")
     poses = Poses(atoms, reference, potential=options["potential"], units=options["units"], out=draft)
     try:
-        _read(poses, frames, options["jobs"], universe.trajectory.packed)
+        _read(poses, frames, options["jobs"])
         draft.replace(out / "poses.npy")
     finally:
         draft.unlink(missing_ok=True)
     return poses
 
 
-def _read(poses, frames, jobs, packed):
-    """Run the analysis of these frames; a compressed dump is unpacked from its beginning for each part."""
-    span = {"start": frames.start, "stop": frames.stop, "step": frames.step}
+def _read(poses, frames, jobs):
+    """Run the analysis of these frames."""
     if jobs == 1:
-        bar = {"desc": "reading", "unit": "frame", "disable": None}
-        poses.run(**span, verbose=True, progressbar_kwargs=bar)
-        return
-    from .backends import Processes
-
-    number = len(range(*frames.indices(len(poses.atoms.universe.trajectory))))
-    parts = min(max(number, 1), jobs if packed else 50 * jobs)
-    backend = Processes(min(jobs, parts), _bar("reading", "part"))
-    poses.run(**span, backend=backend, n_parts=parts, unsupported_backend=True)
+        run = {"verbose": True, "progressbar_kwargs": {"desc": "reading", "unit": "frame", "disable": None}}
+    else:
+        run = {"backend": "multiprocessing", "n_workers": jobs}
+    poses.run(start=frames.start, stop=frames.stop, step=frames.step, **run)
 
 
 def _correlate(out, poses):
@@ -266,12 +226,3 @@ def _distribute(out, poses, pairs, frames):
         top = int(g.argmax())
         cloup.echo(f"g(r) of '{first}' and '{second}' has its largest value, {g[top]:.3g}, at {r[top]:.3g}.")
     write_columns(out / "rdf.csv", columns)
-
-
-def _convert(poses, path, wrap, frames):
-    from .convert import convert, remark
-
-    bar = _bar("writing", "frame")
-    written = convert(poses.atoms, path, poses.units, wrap, frames, poses.results.time, bar)
-    cloup.echo(f"The trajectory is in {' and '.join(map(str, written))}.  {remark(poses.units)}.")
-    return written

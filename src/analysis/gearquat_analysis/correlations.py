@@ -13,7 +13,7 @@ import numpy as np
 from scipy import fft
 from scipy.spatial.transform import Rotation
 
-from . import export, mapped
+from . import box, export
 from .bodies import axis_groups, directions
 from .kinds import kinds, of_kind
 
@@ -65,7 +65,7 @@ def _origins(frames):
 def autocorrelation(values):
     """Mean of x(t) . x(t + lag), of values (F, B, k), such as velocities; units squared."""
     frames, bodies = values.shape[:2]
-    power = sum(_power(mapped.columns(values, own)) for own in portions(values))
+    power = sum(_power(values[:, own]) for own in portions(values))
     return _products(power, frames) / (_origins(frames) * bodies)
 
 
@@ -81,7 +81,7 @@ def _square_displacements(x):
 def mean_square_displacement(center):
     """Mean of ``|x(t + lag) - x(t)|^2``, (F,), of unwrapped centers (F, B, 3); length squared."""
     frames, bodies = center.shape[:2]
-    total = sum(_square_displacements(mapped.columns(center, own)) for own in portions(center))
+    total = sum(_square_displacements(center[:, own]) for own in portions(center))
     return np.maximum(total, 0.0) / (_origins(frames) * bodies)
 
 
@@ -117,7 +117,7 @@ def mean_square_rotation(q, bodies=None):
         axis = np.where(bodies.linear[:, None], bodies.axes[:, 2], np.nan)
     total, largest = np.zeros(frames), 0.0
     for own in portions(q):
-        path = rotation_path(mapped.columns(q, own), None if axis is None else axis[own])
+        path = rotation_path(q[:, own], None if axis is None else axis[own])
         total += _square_displacements(path)
         turns = np.linalg.norm(np.diff(path, axis=0), axis=-1)
         largest = max(largest, turns.max(initial=0.0))
@@ -140,7 +140,7 @@ def orientation_correlation(q, axis, order=1):
         raise ValueError("an axis must not have zero length")
     axis, frames, power = axis / length, len(q), 0.0
     for own in portions(q):
-        turn = Rotation.from_quat(mapped.columns(q, own).reshape(-1, 4), scalar_first=True)
+        turn = Rotation.from_quat(q[:, own].reshape(-1, 4), scalar_first=True)
         along = np.tile(axis[own], (frames, 1))
         u = turn.apply(along).reshape(frames, -1, 3)
         if order == 2:
@@ -184,11 +184,6 @@ class Correlations:
         """pandas.DataFrame with a row for each lag."""
         return export.dataframe(self.functions, self.units)
 
-    def to_xarray(self):
-        """xarray.Dataset with the dimension lag."""
-        variables = {name: ("lag", values) for name, values in self.functions.items()}
-        return export.dataset(variables, {"lag": variables.pop("lag")[1]}, self.units)
-
 
 def turning(poses):
     """Data of the T bodies that are not points.
@@ -209,7 +204,7 @@ def turning(poses):
     some, moments = SimpleNamespace(linear=bodies.linear[own], axes=bodies.axes[own]), bodies.moments[own]
     groups = [(2,)] if some.linear.any() else axis_groups(moments)
     axes = {group: directions(moments, some.axes, group[0]) for group in groups}
-    return q if own.all() else mapped.Part(q, np.flatnonzero(own)), some, axes
+    return q if own.all() else q[:, own], some, axes
 
 
 def all_correlations(poses, progress=iter):
@@ -258,8 +253,8 @@ def axis_autocorrelation(omega, q, axes, group):
     """
     frames, number, power = len(omega), omega.shape[1], 0.0
     for own in portions(q):
-        turn = Rotation.from_quat(mapped.columns(q, own).reshape(-1, 4), scalar_first=True)
-        body = turn.inv().apply(mapped.columns(omega, own).reshape(-1, 3)).reshape(frames, -1, 3)
+        turn = Rotation.from_quat(q[:, own].reshape(-1, 4), scalar_first=True)
+        body = turn.inv().apply(omega[:, own].reshape(-1, 3)).reshape(frames, -1, 3)
         if axes is not None:
             body = np.einsum("bkj,fbj->fbk", axes[own], body)
         power = power + _power(body[..., list(group)])
@@ -290,7 +285,7 @@ def spectra(found):
 def _tasks(poses):
     """(name, function, arguments) for every correlation of the bodies of one kind."""
     results, bodies = poses.results, getattr(poses, "bodies", None)
-    tasks = [("mean_square_displacement", mean_square_displacement, (mapped.own_motion(results),))]
+    tasks = [("mean_square_displacement", mean_square_displacement, (box.own_motion(results),))]
     if "velocity" in results:
         tasks.append(("velocity_autocorrelation", autocorrelation, (results.velocity,)))
     q, some, axes = turning(poses)
@@ -298,7 +293,7 @@ def _tasks(poses):
         if "omega_space" in results:
             omega = results.omega_space
             if bodies is not None and bodies.point.any():
-                omega = mapped.Part(omega, np.flatnonzero(~bodies.point))
+                omega = omega[:, ~bodies.point]
             tasks.append(("omega_space_autocorrelation", autocorrelation, (omega,)))
             for group in _groups(bodies):
                 name = f"omega_{_axes_word(group)}_autocorrelation"

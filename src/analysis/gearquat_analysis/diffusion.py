@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import mapped
 from .blocks import Estimate, scatter
 from .correlations import portions
 
@@ -112,7 +111,7 @@ def _fits(center, dimensions):
     of_bodies = {first: np.empty((len(LAGS), bodies)) for first in firsts}
     of_blocks = dict.fromkeys(firsts, 0.0)
     for own in portions(center):
-        x = mapped.columns(center, own)
+        x = center[:, own]
         for first in firsts:
             squares, blocks = _squares(x[:: _stride(first)], first // _stride(first))
             of_bodies[first][:, own] = squares / dimensions

@@ -7,7 +7,6 @@ Both are averages of a square and need much longer blocks than the average of th
 import numpy as np
 from scipy.constants import Boltzmann
 
-from . import mapped
 from .blocks import Estimate, of_series
 from .superposition import rotate
 from .units import UNITS
@@ -45,7 +44,7 @@ def dipole_moments(poses):
     if np.abs(bodies.sum(charges)).max() > NEUTRAL * largest:
         raise ValueError("bodies have charges, and the dipole moment of ions depends on the origin")
     own = bodies.sum(charges[:, None] * bodies.shape)
-    return np.array([rotate(q[k], own).sum(axis=0) for k in mapped.rows(q)])
+    return np.array([rotate(one, own).sum(axis=0) for one in q])
 
 
 def dielectric_constant(poses, temperature, weights=None):

@@ -20,7 +20,6 @@ class Folder:
     def __init__(self, path, source, options, names, what="dump", more=None):
         self.path, self._names = path, names
         known = self._known()
-        self._written = known.get("written", [])
         # in the form in which they are read back from the file
         self._settings = json.loads(json.dumps({what: str(source.resolve()), **options}, default=str))
         differing = [name for name in self._settings if known and known.get(name) != self._settings[name]]
@@ -46,12 +45,6 @@ class Folder:
         except ValueError:
             return {}
 
-    def require_free(self, paths):
-        """Raises ValueError if a file at ``paths`` exists that this command did not write."""
-        for path in paths:
-            if path.exists() and str(path.resolve()) not in self._written:
-                raise ValueError(f"{path} exists: another name is required")
-
     def fill(self, say):
         """Remove earlier results, which ``say`` is told, and write settings.json."""
         if self.replaced:
@@ -59,12 +52,7 @@ class Folder:
         self.path.mkdir(parents=True, exist_ok=True)
         for name in self._names:
             (self.path / name).unlink(missing_ok=True)
-        self.note()
-
-    def note(self, written=()):
-        """Write settings.json, including the files ``written`` to other places."""
-        self._written = sorted({*self._written, *(str(path.resolve()) for path in written)})
-        text = json.dumps({**self._settings, "written": self._written}, indent=1, ensure_ascii=False)
+        text = json.dumps(self._settings, indent=1, ensure_ascii=False)
         (self.path / SETTINGS).write_text(text + "\n", encoding="utf-8")
 
 

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .mapped import Part
 
 #: largest number of kinds in a mixture; if there are more, all bodies count as different
 MOST = 8
@@ -65,7 +64,7 @@ def of_kind(poses, kind):
     results = _Results(time=poses.results.time)
     for name in ("center", "q", "velocity", "omega_space"):
         if name in poses.results:
-            results[name] = Part(poses.results[name], kind.bodies)
+            results[name] = poses.results[name][:, kind.bodies]
     if "cell" in poses.results:
         results["cell"] = poses.results.cell
     names = ("mass", "moments", "axes", "point", "linear")

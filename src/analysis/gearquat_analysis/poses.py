@@ -7,7 +7,7 @@
     Poses(universe.atoms, out="poses.npy").run()             # limited by disk space, not by memory
 
 All frames of all bodies are in one structured array, ``results.table`` (F, B).  With ``out`` it is a memory-mapped
-file: each frame is written as soon as it is read, so only a few pages are in memory.
+file, into which each frame is written as soon as it is read.
 """
 
 import csv
@@ -20,8 +20,9 @@ from MDAnalysis.exceptions import NoDataError
 
 from .tables import flat
 from .units import UNITS, style_of, unit_of
-from . import export, mapped
+from . import export
 from .bodies import Bodies
+from .box import carried
 from .report import counted
 from .superposition import rotate, superpose
 
@@ -115,8 +116,6 @@ class Poses(AnalysisBase):
     >>> poses = Poses(open_dump("nitrogen.dump").atoms, reference="principal").run(step=100)
     >>> poses.results.center.shape, poses.results.q.shape, poses.unit("omega_space")
     ((9, 64, 3), (9, 64, 4), 'rad/fs')
-    >>> poses.to_xarray()["velocity"].dims
-    ('time', 'body', 'axis')
     >>> bool(poses.results.residual.max() < 1e-7)
     True
     """
@@ -213,7 +212,7 @@ class Poses(AnalysisBase):
         self.results.step[self._frame_index] = self._step()
         self.results.cell[self._frame_index] = self._cell()
         if self._out:
-            # opened for each frame, so that a process has only the pages of its frame in memory
+            # opened for each frame, because a process cannot inherit it
             table, row = np.load(self._out, mmap_mode="r+"), self._row[self._ts.frame]
         else:
             table, row = self.results.table, self._frame_index
@@ -292,18 +291,18 @@ class Poses(AnalysisBase):
         """Make signs of quaternions continuous in time, and centers as well if positions are wrapped."""
         q, center, cell = self.results.table["q"], self.results.table["center"], self.results.cell
         periodic = self.periodic if self._wrapped else None
-        for k in mapped.rows(q, 1):
+        for k in range(1, len(q)):
             turned = np.einsum("bi,bi->b", q[k], q[k - 1]) < 0.0
             q[k, turned] *= -1.0
             if periodic is not None:
-                moved = center[k] - mapped.carried(center[k - 1], *cell[k - 1 : k + 1])
+                moved = center[k] - carried(center[k - 1], *cell[k - 1 : k + 1])
                 center[k] -= np.round(moved @ np.linalg.inv(cell[k, 1:])) * periodic @ cell[k, 1:]
 
     def _warn_of_bent_bodies(self):
         bodies, (center, residual) = self.bodies, (self.results.center, self.results.residual)
         size = bodies.largest(np.linalg.norm(bodies.shape, axis=1))
         worst = 0.0, 0, 0
-        for k in mapped.rows(residual):
+        for k in range(len(residual)):
             rounded = residual[k] <= ROUNDED * np.abs(center[k]).max(axis=1)
             ratio = np.where(rounded, 0.0, residual[k]) / np.where(size > 0.0, size, np.inf)
             worst = max(worst, (ratio.max(), k, int(ratio.argmax())))
@@ -328,7 +327,7 @@ class Poses(AnalysisBase):
         vectors = ["momentum", "angular_momentum_space"] if known else []
         sums = {name: np.empty(len(table)) for name in scalars}
         sums |= {name: np.empty((len(table), 3)) for name in vectors}
-        for k in mapped.rows(table):
+        for k in range(len(table)):
             frame = table[k]
             for name in set(sums) & set(names):
                 sums[name][k] = (np.max if name.endswith("residual") else np.sum)(frame[name], axis=0)
@@ -361,17 +360,6 @@ class Poses(AnalysisBase):
             units |= dict.fromkeys(parts, self.unit(name))
         return export.dataframe(columns, units)
 
-    def to_xarray(self):
-        """xarray.Dataset with the dimensions time, body, axis (x, y, z) and part (of q)."""
-        results = self.results
-        last = {(): (), (3,): ("axis",), (4,): ("part",)}
-        variables = {
-            name: (("time", "body", *last[self._dtype[name].shape]), results[name]) for name in self._dtype.names
-        }
-        coordinates = {"time": results.time, "body": self.ids, "axis": list("xyz"), "part": range(4)}
-        coordinates["step"] = ("time", results.step)
-        return export.dataset(variables, coordinates, {name: self.unit(name) for name in [*variables, "time"]})
-
     def to_csv(self, path, progress=iter):
         """Write a row for each frame and body, with 17 digits; one frame at a time.
 
@@ -380,7 +368,7 @@ class Poses(AnalysisBase):
         with open(path, "w", newline="", encoding="utf-8") as file:
             names = _flat(self.results.table[0])
             csv.writer(file).writerow(["step", "time", "body", *names])
-            for k in progress(mapped.rows(self.results.table)):
+            for k in progress(range(len(self.results.table))):
                 keys = [np.full(len(self.ids), self.results[name][k]) for name in ("step", "time")]
                 values = np.column_stack([*keys, self.ids, *_flat(self.results.table[k]).values()])
                 np.savetxt(file, values, fmt="%.17g", delimiter=",")
