@@ -14,7 +14,7 @@ from support.running import EXAMPLES, ONLY_TREE, WORKERS, Lammps, make_lmp_of_wh
 LONGEST = """
 test_langevin test_restart_state test_pressure test_pressure_company test_mixed_scenes test_large_bodies test_hard_cases
 test_example_logs test_driven_box test_ranks test_pressure_tolerance test_thermostat_far test_extended
-test_minimize test_pressure_limits test_blowup test_running test_step_advice test_coming_and_going test_thermostat_steps
+test_minimize test_blowup test_running test_step_advice test_coming_and_going test_thermostat_steps
 
 test_scatter_flights test_howto test_command_line test_trials_decks test_scatter_bad_input
 test_trials_endings test_tutorial test_analysis_command test_trials_flow

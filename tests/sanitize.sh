@@ -87,8 +87,7 @@ part_sanitize() {
   GEARQUAT_TREE=tree-sanitize GEARQUAT_FUZZ_INPUTS="${GEARQUAT_FUZZ_INPUTS:-5000}" run_pytest sanitize tests/lammps \
     --ignore tests/lammps/test_plugin.py \
     --ignore tests/lammps/test_lammps_standards.py --ignore tests/lammps/test_example_logs.py \
-    --deselect tests/lammps/test_forces_as_verlet.py::test_what_an_atom_style_clears_besides_forces \
-    --deselect tests/lammps/test_forces_as_verlet.py::test_a_run_style_with_forces_elsewhere_is_not_followed \
+    --deselect tests/lammps/test_force_styles.py::test_a_run_style_with_forces_elsewhere_is_not_followed \
     --deselect tests/lammps/test_extended.py::test_the_wheel_refuses \
     --deselect tests/lammps/test_pressure_tilted.py::test_a_build_that_cannot_flip_says_so \
     --deselect tests/lammps/test_extended.py::test_particles_of_style_body_are_refused \

@@ -7,8 +7,7 @@
 
    An object with state has a function fields(Fields &), the only list of the members that decide
    about later steps or outputs; it writes them and reads them.  In the file they follow MAGIC, FORMAT
-   and their count.  A file is read by releases with the same format.  tests/lammps/test_restart_state.py
-   names all other members, with the reason why they are in no file. */
+   and their count.  A file is read by releases with the same format. */
 
 #ifndef GEAR_QUAT_FIELDS_H
 #define GEAR_QUAT_FIELDS_H

@@ -1,8 +1,8 @@
-"""The parts of `tests/run foreign`: LAMMPS' decks, styles and unit tests with fix gear/quat.
+"""The parts of `tests/run foreign`: LAMMPS' decks and styles with fix gear/quat.
 
 Without --all: all styles together with the fix in LAMMPS of the Python package, on 1 rank, and fixes also
 with keyword temp; the styles of the tree of `tests/run build` on 4; variants of styles; the decks of
-examples/rigid; the unit tests of fix styles.  With it: all styles on 1 and 2 ranks, and on 1 and 4 in
+examples/rigid.  With it: all styles on 1 and 2 ranks, and on 1 and 4 in
 a tree with more packages, there also with variants of package INTEL; all decks of both releases.
 --part page writes the page from earlier results of the parts.
 """
@@ -18,13 +18,13 @@ from collections import Counter
 from benchmarks.engine.provenance import commit
 from support.running import ROOT, tree_source
 
-from . import beside, decks, engine, scene, selfcheck, suffixes, yamls
+from . import beside, decks, engine, scene, selfcheck, suffixes
 from .page import RELEASES, page
 
 #: of the decks that run in a few seconds each
 SHORT = r"examples/rigid/in\.rigid(\.small|\.poems|\.early|\.property|\.nve|\.infile)?$"
 SCRATCH = ROOT / "build" / "foreign"
-PARTS = ("styles", "suffixes", "decks", "units")
+PARTS = ("styles", "suffixes", "decks")
 #: time limit for the decks of a release; the remaining decks are "not run"
 SECONDS = 3600
 
@@ -149,13 +149,6 @@ def run_part(part, report, words):
         return styles_of(report, wheel, tree, words)
     if part == "suffixes":
         return try_suffixes(report, wheel, tree, words)
-    if part == "units":
-        source = tree_source(tree.executable.parent)
-        outcomes, reasons = yamls.outcomes(source, wheel, SCRATCH / "units")
-        for outcome in outcomes:
-            report.add(outcome.result != "NEITHER", f"unit test {outcome.name}", *outcome.notes)
-        say(f"   unit tests: {dict(Counter(outcome.result for outcome in outcomes))}")
-        return outcomes, reasons
     verdicts = {}
     for release in RELEASES if words.all else ("oldest",):
         folder = ROOT / "build" / (name if release == "oldest" else "tree-newest-foreign")

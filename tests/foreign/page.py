@@ -116,26 +116,24 @@ def measured_at(commits):
     """The commit of all parts, or the commits of the parts if they differ."""
     if len(set(commits)) == 1:
         return f"Commit {commits[0]}"
-    parts = zip(("Other styles", "variants", "decks", "unit tests"), commits)
+    parts = zip(("Other styles", "variants", "decks"), commits)
     return ", ".join(f"{part} at commit {name}" for part, name in parts if name)
 
 
-def page(commits, tried, variants, verdicts, units):
+def page(commits, tried, variants, verdicts):
     """Text of doc/foreign.md; arguments as in __main__, ``commits`` in the order of the other arguments."""
     parts = (
         ("decks", verdicts),
         ("other styles", tried),
         ("variants of styles", variants),
-        ("unit tests", units),
     )
     left_out = ", ".join(name for name, found in parts if not found)
     tried, variants = tried or {}, variants or {}
-    verdicts, units = verdicts or {}, units or ([], {})
+    verdicts = verdicts or {}
     every, beside_temp = (with_temp(tried, temp) for temp in (False, True))
     reasons = {}
     for _, (_, found, *_) in tried.values():
         reasons |= found
-    counts = sorted(Counter(outcome.result for outcome in units[0]).items())
     template = Path(__file__).with_name("foreign.md.j2").read_text(encoding="utf-8")
     return jinja2.Template(template, undefined=jinja2.StrictUndefined).render(
         command=COMMAND,
@@ -152,8 +150,4 @@ def page(commits, tried, variants, verdicts, units):
         excused=not_kept(every + beside_temp) or "nothing.",
         variants=suffixes_table(variants),
         reasons=reasons_table(reasons),
-        oldest=RELEASES["oldest"],
-        units=", ".join(f"*{what}* ({number})" for what, number in counts) or "none was run",
-        others=len(units[1]),
-        unit_reasons=reasons_table(units[1]),
     ) + "\n"

@@ -6,33 +6,14 @@ of another order for that reason, the log has to name the package; the reference
 
 from dataclasses import dataclass, field
 
-import numpy as np
-from scipy.spatial.transform import Rotation
+from support.scenes import WATER_MASSES, water_data
 
 from . import beside, scene, thermostat
 
 STEPS = 20
-#: SPC/E: places and charges of the sites, and their masses
-WATER = ((0.0, 0.0, 0.0), (0.8165, 0.57736, 0.0), (-0.8165, 0.57736, 0.0))
-CHARGES, WATER_MASSES = (-0.8476, 0.4238, 0.4238), (15.9994, 1.008, 1.008)
-EDGE, SPACING = 4, 3.2
+EDGE = 4
 #: has no effect except that it prevents the start from evaluating forces
 UNFOLLOWED = "fix unfollowed free nve"
-
-
-def water():
-    """Text of a data file: rigid water in a cubic lattice, with random orientations."""
-    places, turns = np.ndindex(EDGE, EDGE, EDGE), Rotation.random(EDGE**3, random_state=3)
-    side, lines = EDGE * SPACING, ["water", "", f"{3 * EDGE**3} atoms", "2 atom types"]
-    lines += [f"0 {side} {axis}lo {axis}hi" for axis in "xyz"]
-    lines += ["", "Masses", "", *(f"{n + 1} {WATER_MASSES[n]}" for n in range(2))]
-    lines += ["", "Atoms # full", ""]
-    for n, (place, turn) in enumerate(zip(places, turns)):
-        sites = SPACING * (np.array(place) + 0.5) + turn.apply(WATER)
-        for k, (site, charge) in enumerate(zip(sites, CHARGES)):
-            x = " ".join(f"{value:.15g}" for value in site)
-            lines.append(f"{3 * n + k + 1} {n + 1} {min(k, 1) + 1} {charge} {x}")
-    return "\n".join(lines) + "\n"
 
 
 def of_molecules(pair, *more):
@@ -89,7 +70,7 @@ SCENES = {
         [*LIQUID, *KSPACE],
         "gear/quat molecule temp 300 300 100",
         _variants("lj/cut/coul/long", "opt", "omp", "intel"),
-        thermostat.Bodies(WATER_MASSES, EDGE**3, 0.0019872067),
+        thermostat.Bodies(tuple(WATER_MASSES), EDGE**3, 0.0019872067),
     ),
 }
 
@@ -119,7 +100,7 @@ def outcomes(engine, suffix, ranks, folder):
     """Outcomes of all scenes that have variants with this suffix, on this number of ranks."""
     folder.mkdir(parents=True, exist_ok=True)
     scene.write_files(folder)
-    (folder / "data.water").write_text(water())
+    water_data(folder / "data.water", EDGE, spacing=3.2, shift=1.6)
     names = [(n, temp) for n in SCENES if suffix in SCENES[n].variants for temp in (False, True)]
     plain = {(*name, known): script(*name, known=known) for name in names for known in (False, True)}
     references = engine.answers(plain, folder, ranks)

@@ -5,7 +5,7 @@ import re
 from unittest import mock
 
 from lammps_gearquat import keywords
-from support.scenes import TWO_MOLECULES
+from support.scenes import TWO_MOLECULES, TWO_SITES
 
 from . import tokens
 
@@ -29,7 +29,7 @@ molecule two molecule.two
 molecule heavy molecule.two
 """
 FILES = {
-    "molecule.two": "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n",
+    "molecule.two": TWO_SITES,
     "bodies": "1\n1 3.0 0.33 0.4 0.03 1 1 1 0 0 0 0.1 0 0.2 0 0.1 0.3 0 0 0\n",
     "broken": "1\n1 3.0 0.33\n",
     "empty": "",

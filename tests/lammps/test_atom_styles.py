@@ -145,7 +145,7 @@ run 3000
 
 
 def test_an_arm_of_a_body(lmp_wheel):
-    """A bond between a body and a free sphere that turn together does not bend; in 0.4.0 by 3 radians."""
+    """A bond between a body and a free sphere that turn together does not bend."""
     bend = lmp_wheel.succeed(ARM).thermo[-1]["v_bend"]
     assert max(map(abs, bend)) < 2e-3
 
@@ -195,7 +195,7 @@ def sph(lmp, fix, ranks=1, before=""):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_friction_of_smoothed_particles(lmp_wheel, ranks):
-    """As with fix rigid/meso: the drag, and the densities of the particles of the body.  In 0.4.0 there was no drag."""
+    """As with fix rigid/meso: the drag, and the densities of the particles of the body."""
     body, meso = sph(lmp_wheel, "gear/quat", ranks), sph(lmp_wheel, "rigid/meso")
     assert meso["v_v"][-1] < 0.15
     for name, width in ("v_v", 0.3), ("c_mean", 0.02):

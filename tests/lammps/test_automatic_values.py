@@ -33,16 +33,6 @@ def test_the_step_decides(lmp_tree, data):
         assert (edge > 0.25) == (expected == 5)
 
 
-@pytest.mark.parametrize("words", ["values 9", "values 5", "tolerance 1e-6"])
-def test_stated_numbers_are_not_changed(lmp_tree, data, words):
-    assert chosen(run(lmp_tree, data, words, dt=LONG)) == []
-
-
-def test_other_methods(lmp_tree, data):
-    for words, expected in (("formulation first", 6), ("formulation second", 8), ("corrector gear", 8)):
-        assert numbers(run(lmp_tree, data, words, dt=LONG)) == [expected]
-
-
 @pytest.mark.parametrize("words", ["", "corrector gear", "formulation first"])
 def test_random_forces(lmp_tree, data, words):
     """They have velocity Verlet, or in formulation first, which has none, a warning."""
@@ -162,22 +152,6 @@ def test_a_body_in_a_dpd_fluid(lmp_wheel):
     assert np.ptp(ours[1]) < 1e-12 * ours[1][0]
 
 
-def test_a_gas_that_cools_collides_with_nothing(lmp_tree):
-    """Its friction is strong at first; without forces there is nothing to warn of."""
-    hot = "velocity all create 34 991\nthermo_style custom step temp"
-    deck = placed(
-        [[place, place + [1, 0, 0]] for place in PLACES],
-        fix="gear/quat molecule temp 1.0 1.0 0.01",
-        before=hot,
-        dt=0.001,
-        steps=60,
-        box="-4 8 -4 8 -4 8",
-        boundary="p p p",
-    )
-    result = lmp_tree.succeed(deck.replace("fix_modify move energy yes", ""))
-    assert "collisions" not in result.output
-
-
 @pytest.mark.parametrize("words, dt", [("", 8.0), ("formulation first", 16.0)])
 def test_a_step_too_long_for_any(lmp_tree, data, words, dt):
     """Both formulations judge vibrations and rotations."""
@@ -200,12 +174,6 @@ def test_a_run_in_another_range_begins_with_another_number(lmp_tree):
     result = springs(lmp_tree, 0.15, "run 9\ntimestep 0.26\nrun 9\ntimestep 0.13\nrun 9")
     assert numbers(result) == [9, 5, 9]
     assert result.stdout.count("the motion suits another number of values; histories are rebuilt") == 2
-
-
-def test_close_to_the_limit_it_stays(lmp_tree):
-    commands = "run 9" + 3 * "\ntimestep 0.21\nrun 9\ntimestep 0.16\nrun 9"
-    assert numbers(springs(lmp_tree, 0.16, commands)) == [9]
-    assert numbers(springs(lmp_tree, 0.21, commands)) == [5]
 
 
 def test_without_setup_it_stays(lmp_tree):

@@ -147,56 +147,6 @@ def test_first_forces_with_respa(lmp_tree, data):
     assert np.abs(ends[0] - ends[1]).max() < 1e-12
 
 
-# --- evaluations of forces disturb nothing -----------------------------------------------------------
-
-OF_TALLIES = {
-    "pe": "variable f equal 1e-3*pe",
-    "virial": "compute p all pressure NULL virial\nvariable f equal 1e-6*c_p[1]",
-    "pe/atom": "compute e all pe/atom\nvariable f atom 1e-3*c_e",
-    "stress/atom": "compute s all stress/atom NULL\nvariable f atom 1e-6*c_s[1]",
-}
-
-
-@pytest.mark.parametrize("name", OF_TALLIES)
-def test_a_field_of_energy_or_pressure(lmp_tree, data, name):
-    """The energy is available only at steps, so the start has order 2; LAMMPS' requirements for such a field are
-    fulfilled."""
-    field = OF_TALLIES[name] + "\nfix a all addforce v_f 0.0 0.0"
-    places = (dict(before=field, after=""), dict(after=field))
-    decks = [deck(data, run="run 5", **place) for place in places]
-    result = lmp_tree.succeed(one_after_the_other(decks))
-    assert result.stdout.count(f"{FALLBACK} fix a (addforce) depends on energies or pressures") == 2
-
-
-def test_a_field_of_every_few_steps_is_not_followed(lmp_tree, data):
-    field = "fix a all addforce 0.1 0.0 0.0 every 10"
-    result = lmp_tree.succeed(deck(data, run="run 5", after=field))
-    assert FALLBACK + " an external force depends on time" in result.stdout
-
-
-def test_a_random_force_is_found(lmp_tree, data):
-    """It differs when it is evaluated again."""
-    field = "variable f equal random(-1,1,4711)\nfix a all addforce v_f 0.0 0.0"
-    result = lmp_tree.succeed(deck(data, "start bootstrap", run="run 5", after=field))
-    assert FALLBACK + " an external force depends on time" in result.stdout
-
-
-def test_bonds_that_break_are_not_followed(lmp_tree):
-    """Evaluation at an outer node of the start would break the bonds permanently."""
-    bonds = (
-        "bond_style quartic\nbond_coeff 1 1200 -0.55 0.25 1.3 34.6878\nspecial_bonds lj 1 1 1\n"
-        "create_bonds single/bond 1 1 4"
-    )
-    text = two_molecules(before=bonds, after="run 1")
-    for old, new in (
-        ("create_box 1 box", "create_box 1 box bond/types 1 extra/bond/per/atom 1"),
-        ("pair_style zero 2.0\npair_coeff * *", "pair_style lj/cut 2.0\npair_coeff * * 0.0 1.0"),
-        ("single 5.0 5.0 5.0", "single 2.0 0.0 0.0"),
-    ):
-        text = text.replace(old, new)
-    result = lmp_tree.succeed(text)
-    assert FALLBACK + " bonds of style quartic may break" in result.stdout
-
 
 # --- masses and image flags between runs --------------------------------------------------------------
 

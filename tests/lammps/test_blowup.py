@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support.scenes import frames, two_molecules, water, water_data, whole_deck
+from support.scenes import TWO_SITES, frames, two_molecules, water, water_data, whole_deck
 
 # Forces on chosen atoms from step 5 on; before it exp(0) * 0.
 PUSH = """
@@ -93,9 +93,7 @@ def test_atoms_on_top_of_each_other(lmp_tree, distance, start, ranks):
 
 def test_an_inserted_body(lmp_tree):
     """An inserted body starts with the forces of its first step."""
-    (lmp_tree.folder / "molecule.two").write_text(
-        "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n"
-    )
+    (lmp_tree.folder / "molecule.two").write_text(TWO_SITES)
     after = """
 molecule two molecule.two
 unfix move

@@ -6,6 +6,7 @@ Unsupported settings are in test_bad_input.py.
 import numpy as np
 import pytest
 from support.constant_pressure import REPULSIVE, distances, ends, pressed, trimers
+from support.scenes import template
 
 TILTED = np.eye(3)
 SOLVENT = """create_atoms 2 random 40 4711 NULL overlap 0.7 maxtry 500
@@ -127,8 +128,7 @@ def test_atoms_have_the_velocities_of_their_images(lmp_wheel, words):
 @pytest.mark.parametrize("ranks, cutoff", [(1, 2.0), (2, 0.3)])
 def test_nobody_notices_who_leaves_or_arrives(lmp_tree, ranks, cutoff):
     """Free bodies in a flow; other fixes remove and insert bodies before atoms are wrapped."""
-    dimer = "dimer\n\n2 atoms\n\nCoords\n\n1 -0.3 0 0\n2 0.3 0 0\n\nTypes\n\n1 1\n2 1\n"
-    (lmp_tree.folder / "dimer.mol").write_text(dimer)
+    (lmp_tree.folder / "dimer.mol").write_text(template([(-0.3, 0, 0), (0.3, 0, 0)]))
     deck = """
 units lj
 atom_style molecular

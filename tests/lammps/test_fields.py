@@ -1,6 +1,5 @@
 """examples/fields: LAMMPS' own fixes act on the sites of bodies."""
 
-import re
 
 import numpy as np
 import pytest
@@ -39,20 +38,3 @@ def test_a_wall_sends_bodies_back_and_keeps_the_energy(fields):
     assert log["PotEng"].max() > 0.1
     _, free = fields("none", steps=2000, dt=0.005)
     assert (log["c_centre[3]"] - free["c_centre[3]"])[-1] > 0.1
-
-
-def test_a_thermostat_sets_the_temperature(fields):
-    result, log = fields("langevin", steps=10000, every=10)
-    assert "start with known forces only (order 2)" in result.output
-    assert log["Temp"][50:].mean() == pytest.approx(1.0, abs=0.03)
-    _, colder = fields("langevin", steps=10000, every=10, temperature=0.9)
-    assert colder["Temp"][50:].mean() == pytest.approx(0.9, abs=0.03)
-
-
-def test_nothing_is_computed_for_a_field_that_is_absent(fields):
-    on = fields("gravity")[0].log
-    off, log = fields("none")
-    assert re.search(r"torques of forces +on", off.log)
-    assert re.search(r"predicted velocities +off", off.log)
-    assert re.search(r"torques of forces +on", on) and "fix field (gravity) may read them" in on
-    assert log["KinEng"] == pytest.approx(np.full(11, log["KinEng"][0]), rel=1e-12)

@@ -1,11 +1,11 @@
-"""Forces between steps with pair styles that sum up rates, depend on time or draw random numbers."""
+"""Forces between steps with pair styles that sum up rates, and with forces elsewhere."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from support.running import run_python
 
-FALLBACK = "start with known forces only (order 2), because"
-FULL = "start of order 8 from"
 
 # Two triangles; {pair} acts between them.
 DECK = """
@@ -105,39 +105,13 @@ def test_rates_of_a_repeated_step_are_those_of_one_evaluation(lmp_wheel):
     assert off.max() < 1e-3
 
 
-# --- factors of pair styles --------------------------------------------------------------------------
-SCALED = """
-variable same equal 1.0
-{variable}
-pair_style hybrid/scaled v_same lj/charmm/coul/charmm 4.0 5.0 v_factor born 9.0
-set atom * charge 0.0
-pair_coeff * * lj/charmm/coul/charmm 1.0 0.8
-pair_coeff * * born 1.0 0.3 1.0 0.0 0.0
-"""
-ON_TIME = "forces depend on time (pair style hybrid/scaled)"
-NOT_FOLLOWED = {
-    "step": ("equal 1+0.5*sin(0.05*step)", ON_TIME),
-    "time": ("equal 1+0.5*time", ON_TIME),
-    "atom": ("atom 1+0.5*time*(x>0)", ON_TIME),
-    "ramp": ("equal ramp(1.0,2.0)", ON_TIME),
-    "pulse": ("equal 1+(step<1)", ON_TIME),
-    "random": ("equal random(0.5,1.5,4711)", ON_TIME),
-    "energy": ("equal 1+0.001*pe", "pair style hybrid/scaled depends on energies or pressures, which LAMMPS computes only in steps"),
-}
-FOLLOWED = {"constant": "equal 0.5", "place": "equal 1+0.01*xcm(all,x)", "atom": "atom 1+0.0*x"}
-
-
-def scaled(factor):
-    pair = SCALED.format(variable=f"variable factor {factor}")
-    return deck("fix move all gear/quat molecule\nthermo_style custom step pe\nrun 3", pair, "full")
-
-
-@pytest.mark.parametrize("number, name", list(enumerate(NOT_FOLLOWED)))
-def test_factors_that_are_not_followed(lmp_tree, name, number):
-    factor, reason = NOT_FOLLOWED[name]
-    assert f"{FALLBACK} {reason}" in lmp_tree.succeed(scaled(factor), ranks=1 + number % 2).stdout
-
-
-@pytest.mark.parametrize("name", FOLLOWED)
-def test_factors_of_positions_are_followed(lmp_tree, name):
-    assert FULL in lmp_tree.succeed(scaled(FOLLOWED[name])).stdout
+# --- forces elsewhere ---------------------------------------------------------------------------------
+def test_a_run_style_with_forces_elsewhere_is_not_followed(lmp_wheel):
+    """Run style verlet/split gets long-range forces from the ranks of another partition."""
+    pair = "pair_style lj/cut/coul/long 3.0\npair_coeff * * 0.1 1.0\nset atom 1*3 charge 0.3\nset atom 4*6 charge -0.3\nkspace_style pppm 1e-4"
+    text = deck("fix move all gear/quat molecule\nrun_style verlet/split\nrun 2", pair, "full")
+    text = text.replace("region box", "processors * * * part 1 2 multiple\nregion box")
+    # words after a variable in the command line
+    replace(lmp_wheel, library=None).succeed(text, {"none": ["0", "-partition", "1", "1"]}, ranks=2)
+    log = (lmp_wheel.folder / "log.run1.0").read_text()
+    assert "because run style verlet/split may evaluate forces elsewhere" in log

@@ -118,8 +118,3 @@ def test_nothing_to_keep_is_refused(lmp_tree, mode, velocities, message, ranks):
         lines = [line for line in deck.splitlines() if not line.startswith(("create_atoms", "set"))]
         deck = "\n".join(lines).replace("mass 1", f"{square}set group all mol 1\nmass 1")
     lmp_tree.refuse(deck, message, ranks=ranks)
-
-
-def test_a_spin_alone_has_a_total(lmp_tree):
-    fix = "molecule formulation first isokinetic total"
-    lmp_tree.succeed(two_molecules(fix, "velocity all set 0.3 0 0.1"))

@@ -145,26 +145,6 @@ def test_diffusion_of_a_free_body(simulate):
     assert means[-1, 0] == pytest.approx(exact, rel=5 * np.sqrt(2 / 3 / 512))
 
 
-def test_rotational_diffusion(lmp_tree, simulate):
-    """In two dimensions the angle of a free body is normally distributed, with the variance of an integrated velocity."""
-    tau, time = 0.4, 2.0
-    dump = "write_dump all custom {} id xu yu modify sort id format float %.12g\n"
-    simulate(
-        flat=True, side=64, langevin=f"{T} {T} {tau} 4711", dt=0.02, run=f"{dump.format('one')}run 100\n{dump.format('two')}"
-    )
-    angles = []
-    for name in ("one", "two"):
-        places = np.loadtxt(lmp_tree.folder / name, skiprows=9)[:, 1:].reshape(-1, 3, 2)
-        along = places[:, 1] - places[:, 0]
-        angles.append(np.arctan2(along[:, 1], along[:, 0]))
-    masses, arms = np.array([1.0, 1.0, 2.0]), np.array([[0.0, 0.0], [0.6, 0.0], [0.0, 0.7]])
-    inertia = masses @ ((arms - masses @ arms / masses.sum()) ** 2).sum(axis=1)
-    exact = np.exp(-T * tau / inertia * (time - tau * (1 - np.exp(-time / tau))))
-    cosines = np.cos(angles[1] - angles[0])
-    assert 0.1 < exact < 0.9
-    assert cosines.mean() == pytest.approx(exact, abs=4 * cosines.std() / np.sqrt(len(cosines)))
-
-
 def test_pressure(simulate):
     """An ideal gas of N bodies: <V> = (N + 1) kT/P."""
     _, means = simulate(

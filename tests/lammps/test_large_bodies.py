@@ -16,6 +16,7 @@ from support.scenes import (
     one_after_the_other,
     random_rotation,
     restarted,
+    template,
     water,
     write_data,
 )
@@ -232,11 +233,7 @@ def test_a_large_body_goes_astray(lmp_tree):
     assert said[0].partition(" (src")[0] == said[1].partition(" (src")[0]
 
 
-def numbered(row):
-    return "\n".join(f"{k} {row.format(k - 5)}" for k in range(1, 10))
-
-
-ROD = f"rod\n\n9 atoms\n\nCoords\n\n{numbered('{} 0 0')}\n\nTypes\n\n{numbered('1')}\n"
+ROD = template([(k, 0, 0) for k in range(-4, 5)])
 RAIN = """
 region top block 3 17 3 17 3 17
 fix rain all deposit 3 0 30 4711 region top near 2.0 attempt 1000 mol rod rigid move vx 8 9 vy 6 7

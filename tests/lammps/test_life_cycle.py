@@ -2,8 +2,26 @@
 
 import numpy as np
 import pytest
-from support.scenes import two_molecules, water
-from support.paper_case import Case1, end
+from support.scenes import two_molecules, water, whole_deck
+
+COLUMNS = ["c_centre[1]", "c_centre[2]", "c_centre[3]", "c_potential", "v_ketrans", "v_kerot"]
+
+
+class Case1:
+    """The paper's first case with other final commands."""
+
+    def __init__(self, lmp, examples, formulation):
+        self.lmp = lmp
+        self.scene = whole_deck(examples / "case1" / "in.case1")
+        self.variables = dict(formulation=formulation, dt=0.02, every=100, out="none")
+
+    def run(self, ending, **variables):
+        """With the steps in ``ending``."""
+        return self.lmp.succeed(self.scene.replace("run ${steps}", ending), {**self.variables, **variables})
+
+
+def end(result):
+    return np.array([result.thermo[-1][column][-1] for column in COLUMNS])
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.running import Lammps
-from support.scenes import FORMULATIONS, WATER_MASSES, last_frame, one_after_the_other, water, water_data
+from support.scenes import FORMULATIONS, WATER_MASSES, last_frame, one_after_the_other, water, water_data, with_bonds
 
 RIGID, OURS = "rigid/nve/small molecule", "gear/quat molecule formulation "
 METHODS = {"rigid": RIGID, **{formulation: OURS + formulation for formulation in FORMULATIONS}}
@@ -130,21 +130,6 @@ def test_a_drag_on_every_site_stops_the_whole(box, fix, kind):
 # --- bodies among atoms that another fix moves ------------------------------------------------
 
 
-def with_bonds(data):
-    """The same molecules with bonds and angles; one more bond connects the last body to its neighbor."""
-    text = data.read_text()
-    counts = f"{2 * N**3 + 1} bonds\n2 bond types\n{N**3} angles\n1 angle types\n"
-    text = text.replace("\nMasses", f"{counts}\nMasses")
-    oxygens = range(1, 3 * N**3, 3)
-    bonds = [f"{2 * k + j + 1} 1 {o} {o + j + 1}" for k, o in enumerate(oxygens) for j in (0, 1)]
-    bonds.append(f"{len(bonds) + 1} 2 40 43")
-    angles = [f"{k + 1} 1 {o + 1} {o} {o + 2}" for k, o in enumerate(oxygens)]
-    text += "\n".join(["", "Bonds", "", *bonds, "", "Angles", "", *angles, ""])
-    path = data.with_name("data.bonds")
-    path.write_text(text)
-    return path
-
-
 SOLVENT = {
     "flexible": """
 bond_style harmonic
@@ -170,7 +155,7 @@ def solution(request, box):
     """Half of the molecules are rigid; the others are flexible, or single atoms, and moved by fix nve."""
     box.ranks = 2 if request.param == "flexible" else 1
     if request.param == "flexible":
-        box.data = with_bonds(box.data)
+        box.data = with_bonds(box.data, "2 40 43")
     box.before = SOLVENT[request.param] + "\nfix others others nve\n"
     return box
 
@@ -194,7 +179,7 @@ def test_bodies_and_solvent_move_each_other(solution):
 
 def test_respa_with_forces_of_both_levels(box, fix):
     """A bond acts on a body on one level, and all pairs on the other level: their sum moves the body."""
-    box.data = with_bonds(box.data)
+    box.data = with_bonds(box.data, "2 40 43")
     before = SOLVENT["flexible"] + "\nfix others others nve\n"
     common = dict(group="bodies", dt=0.2, steps=200)
     levels = "run_style respa 2 1 bond 1 angle 1 pair 2\n"

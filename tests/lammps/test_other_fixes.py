@@ -1,9 +1,7 @@
 """Other fixes that change velocities, positions or masses of the atoms of bodies: one table."""
 
-import math
 import re
 
-import numpy as np
 import pytest
 from support.running import ROOT
 from support.scenes import one_after_the_other, placed, two_molecules, water, water_data
@@ -145,70 +143,3 @@ def test_values_that_random_forces_heat(lmp_wheel, words):
     assert re.search(line, told)[1] == "t (langevin)"
     assert re.search(line, (ROOT / "doc/howto/read_log.md").read_text())
     assert "cannot follow" not in lmp_wheel.succeed(two_molecules(after=after)).words
-
-
-@pytest.mark.parametrize(
-    "part, words, error",
-    [(0.001, "", 0.005), (0.03, "", 0.005), (0.05, "", 0.005), (0.2, "corrector gear values 4", 0.02)],
-)
-def test_velocities_fade_as_the_friction_says(lmp_wheel, part, words, error):
-    """From weak friction to one that removes a fifth of a momentum in a step."""
-    after = f"fix drag all viscous {part / 0.01}\nthermo 10\nthermo_style custom step temp\nrun 10"
-    after += "\nthermo_modify format float %.17g"
-    ours = lmp_wheel.succeed(two_molecules(f"molecule {words}", after=after)).thermo[-1]["Temp"]
-    assert ours[-1] / ours[0] == pytest.approx(math.exp(-20 * part), rel=error)
-
-
-SRD = """
-units lj
-atom_style sphere
-atom_modify map array first big
-dimension 2
-fix molprop all property/atom mol ghost yes
-region box block 0 8 0 8 -0.5 0.5
-create_box 2 box
-{atoms}
-set type 1 mass 1.0
-group big type 1
-region plane block INF INF INF INF -0.001 0.001
-lattice sq 85.0
-create_atoms 2 region plane
-set type 2 mass 0.1
-group small type 2
-velocity small create 1.0 593849 loop geom
-pair_style lj/cut 2.5
-pair_coeff 1 1 1.0 1.0
-pair_coeff 2 2 0.0 1.0 0.0
-pair_coeff 1 2 0.0 1.0 0.5
-delete_atoms overlap 0.5 small big
-pair_coeff 1 2 0.0 1.0 0.0
-neighbor 0.3 multi
-neigh_modify delay 0 every 1 check yes include big
-comm_modify mode multi group big vel yes
-timestep 0.001
-fix move big {fix}
-fix heat small srd 20 big 1.0 0.25 49894 shift yes 54979 search 0.2 collision slip inside ignore overlap yes
-fix flat all enforce2d
-compute big big temp/sphere
-thermo_style custom step temp
-thermo_modify temp big
-thermo 20
-run 3000
-"""
-
-
-def test_srd_has_few_values(lmp_wheel):
-    """Collisions are forces in a single step: they cause heating with a long history, and no heating with a short
-    history."""
-    lines = []
-    for n, (x, y) in enumerate([(2, 2), (5.7, 2.1), (2.1, 5.8), (6, 6)]):
-        lines += [f"create_atoms 1 single {x} {y} 0", f"create_atoms 1 single {x + 1} {y} 0"]
-        lines.append(f"set atom {2 * n + 1}*{2 * n + 2} mol {n + 1} diameter 1.0")
-    fixes = ["gear/quat molecule", "gear/quat molecule corrector gear values 8", "rigid/small molecule"]
-    decks = [SRD.format(atoms="\n".join(lines), fix=fix) for fix in fixes]
-    result = lmp_wheel.succeed(one_after_the_other(decks))
-    few, many, rigid = (np.mean(table["Temp"][50:]) for table in result.thermo)
-    assert few == pytest.approx(rigid, rel=0.25)
-    assert many > 2 * rigid  # the log warns of this
-    told = "forces of fix heat (srd) are random, and 8 values cannot follow them; leave out keywords values and"
-    assert result.words.count("cannot follow") == 1 and told in result.words

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import TRIMER
+from support.scenes import TRIMER, template
 
 DECK = """
 units lj
@@ -39,25 +39,7 @@ thermo {every}
 {run}
 write_dump all custom end id x y z vx vy vz modify sort id format float %.17g
 """
-LOOSE = """loose
-
-2 atoms
-1 bonds
-
-Coords
-
-1 0 0 0
-2 0.8 0 0
-
-Types
-
-1 3
-2 3
-
-Bonds
-
-1 1 1 2
-"""
+LOOSE = template([(0, 0, 0), (0.8, 0, 0)], [3, 3], bonds=[(1, 2)])
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ Unsupported settings are in test_bad_input.py, restarts and ranks in test_pressu
 
 import numpy as np
 import pytest
-from support.constant_pressure import GAUSS, distances, ends, frame, pressed, scaled_water, trimers
-from support.scenes import largest_change, water_data
+from support.constant_pressure import GAUSS, distances, ends, frame, pressed, trimers
+from support.scenes import largest_change, water_data, with_bonds
 
 EDGES = ("Lx", "Ly", "Lz")
 #: elements of the fix's vector: molecular pressures xx yy zz, target, rates of the box, its kinetic energy
@@ -94,8 +94,8 @@ def test_virial_is_the_change_of_energy_with_the_box(lmp_wheel, name):
         factors = np.ones(3)
         if axis is not None:
             factors[axis] = np.exp(d * (-2, -1, 1, 2)[(k - 1) % 4])
-        scaled_water(lmp_wheel.folder / f"data.{k}", factors)
-        decks.append(WATER.format(data=f"data.{k}", force=force))
+        data = with_bonds(water_data(lmp_wheel.folder / f"data.{k}", shift=1.65, factors=factors))
+        decks.append(WATER.format(data=data, force=force))
     result = lmp_wheel.succeed("\nclear\n".join(decks))
     tables = result.thermo
     virial = np.array([tables[0][f"f_move[{k}]"][0] for k in PRESSURES]) * tables[0]["Volume"][0] / NKTV2P

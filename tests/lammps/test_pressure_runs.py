@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support import constant_pressure as scene
 from support.constant_pressure import REPULSIVE, apart, ends, trimers
-from support.scenes import FORMULATIONS, largest_change, one_after_the_other
+from support.scenes import FORMULATIONS, largest_change, one_after_the_other, water_data
 
 MODES = {
     "NPH": "iso 0.3 0.3 1.0",
@@ -172,9 +172,7 @@ def test_the_fix_again_after_its_compute_was_deleted(lmp_tree):
 
 def test_forces_that_reach_far(lmp_tree):
     """Water with PPPM and a tail correction: order of the conserved energy."""
-    from support.constant_pressure import scaled_water
-
-    scaled_water(lmp_tree.folder / "data.water", (1.0, 1.0, 1.0))
+    water_data(lmp_tree.folder / "data.water", shift=1.65)
     deck = """
 units real
 atom_style full

@@ -2,7 +2,7 @@
 
 Every object lists the members that decide about later steps in one function fields(), by which files are written
 and read (gear_quat_fields.h).  A file that is read and written again at once has the same bits; `run 0` prints
-the same numbers, and so does each of the next steps.  Members that are in no list are named here, with the reason.
+the same numbers, and so does each of the next steps.
 """
 
 import re
@@ -11,10 +11,8 @@ import struct
 import numpy as np
 import pytest
 from support.constant_pressure import REPULSIVE, apart, ends as pressed_ends, pressed, trimers
-from support.running import ROOT
 from support.scenes import FORMULATIONS, one_after_the_other
 
-PACKAGE = ROOT / "src" / "GEARQUAT"
 MAGIC = struct.pack("d", float(int.from_bytes(b"gearquat", "big")))
 STEPS, MORE = 60, 20
 
@@ -195,114 +193,3 @@ def test_damaged_data_are_refused(lmp_tree, ranks):
     file.write_bytes(content[:at] + struct.pack("d", count - 1.0) + content[at + 8 :])
     message = "the data of fix move in the restart file are damaged"
     lmp_tree.refuse(deck(TEMP, "run 5", "one"), message, ranks=ranks)
-
-
-# --- members that are in no list ----------------------------------------------------------------
-
-COMMAND, RUN, STEP = "from the command", "of a run or a start", "of a step"
-DERIVED, MESSAGES, OTHERS = "from members in the list", "for messages only", "other objects"
-#: the members of classes that are in no list; "classes": a class that has its own list elsewhere
-NOT_IN_A_FILE = {
-    "chain Chain": {COMMAND: "length", DERIVED: "begun", STEP: "latest width"},
-    "history ScalarHistory": {},
-    "cell CellHistory": {COMMAND: "n", STEP: "c weight total"},
-    "box Box": {COMMAND: "fixed", DERIVED: "m inverse change inverse_change"},
-    "tolerance TimeStep": {},
-    "remembered_loads RememberedLoads": {
-        COMMAND: "carries",
-        STEP: "corrector to_trial of_fewer of_more lag lag_of_dropped",
-    },
-    "temperature IsokineticConstraint": {
-        COMMAND: "mode scales",
-        OTHERS: "bodies",
-        STEP: "sums alpha factor",
-    },
-    "tolerance Tolerance": {
-        COMMAND: "control every_time",
-        OTHERS: "fix bodies time_step",
-        DERIVED: "present",
-        RUN: "forces",
-        STEP: "predicted errors speed tries failed fresh",
-    },
-    "temperature Temperature": {
-        COMMAND: "subtracted stop words",
-        OTHERS: "fix bodies",
-        RUN: "constant stated outside of_total count_of mass changes natoms",
-        STEP: "twice tensor common wanted sums",
-    },
-    "bath Bath": {
-        COMMAND: "words thermostats values_of_heat",
-        OTHERS: "bodies",
-        DERIVED: "xi of_all",
-        RUN: "at_nodes held",
-        STEP: "kept kept_heat coefficients_of_heat same_bodies",
-        MESSAGES: "told",
-    },
-    "barostat Barostat": {
-        COMMAND: "asked id",
-        OTHERS: "fix bodies sites temperature",
-        DERIVED: "rate of_bodies",
-        RUN: "cell_at_nodes time_of_node",
-        STEP: "local_error kept",
-        MESSAGES: "told",
-    },
-    "sites Sites": {
-        OTHERS: "bodies ownership extended",
-        DERIVED: "sites images image ways first first_arm",
-        RUN: "nplacements",
-    },
-    "step Step": {
-        COMMAND: "masks args present",
-        OTHERS: "fix fleet bodies ownership others tally",
-        DERIVED: "integrator started",
-        RUN: "phase edge_of_start of_file velocities_read rates limits",
-        STEP: "vflag_of_step",
-        MESSAGES: "warned",
-    },
-}
-
-
-def code(path):
-    """Without comments and initial values of members."""
-    text = re.sub(r"//.*", "", re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.S))
-    return re.sub(r"\s*=\s*({[^{}]*}|[^,;{}()]+(\([^()]*\))?)(?=[,;])", "", text)
-
-
-def inside(text, start):
-    """The text between the brace at the end of ``start``, a regular expression, and the matching brace."""
-    text, depth, end = re.split(start, text, maxsplit=1)[1], 1, 0
-    while depth:
-        depth += {"{": 1, "}": -1}.get(text[end], 0)
-        end += 1
-    return text[: end - 1]
-
-
-def members(header, name):
-    """The data members of a class, and the names in its list of fields."""
-    body = inside(code(PACKAGE / f"gear_quat_{header}.h"), rf"\b(?:class|struct) {name}\b[^;{{]*{{")
-    depth, level = 0, ""
-    for character in body:
-        depth -= character == "}"
-        level += character if depth == 0 else ""
-        depth += character == "{"
-    found = set()
-    for statement in re.split(r"[;}]|\b(?:public|private|protected):", level):
-        if "(" in statement or re.match(r"\s*(using|enum|friend|template|static|struct|class|$)", statement):
-            continue
-        while "<" in statement:
-            statement = re.sub(r"<[^<>]*>", "", statement)
-        found |= {re.findall(r"\w+", re.sub(r"\[.*", "", part))[-1] for part in statement.split(",")}
-    sources = "".join(map(code, sorted(PACKAGE.glob(f"gear_quat_{header}*.cpp"))))
-    in_source, in_class = rf"void {name}::fields\(.*?\)\s*{{", r"\bvoid fields\(.*?\)(?: override)?\s*{"
-    listed = inside(sources, in_source) if re.search(in_source, sources) else inside(body, in_class)
-    return found, set(re.findall(r"\w+", listed))
-
-
-@pytest.mark.parametrize("name", NOT_IN_A_FILE)
-def test_every_member_is_in_the_list_or_named_here(name):
-    found, listed = members(*name.split())
-    named = " ".join(NOT_IN_A_FILE[name].values()).split()
-    assert len(set(named)) == len(named)
-    assert found - listed - set(named) == set(), "put them into fields(), or name them here with the reason"
-    assert set(named) <= found
-    assert found & listed - set(named)

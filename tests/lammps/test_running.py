@@ -25,15 +25,6 @@ run 0
 """
 
 
-@pytest.mark.parametrize("ranks", [1, 4])
-def test_a_run_gives_its_thermo(lmp, ranks):
-    result = lmp.succeed(DECK, {"steps": 7}, ranks=ranks)
-    assert f"on {ranks} procs" in result.log
-    assert [table["Step"] for table in result.thermo] == [[0, 7], [7]]
-    assert result.thermo[0]["TotEng"] == pytest.approx([0.25, 0.25])
-    assert result.errors == []
-
-
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_wrong_expectation_fails(lmp, ranks):
     wrong = DECK.replace("pair_style zero", "pair_style nonsense")

@@ -1,6 +1,6 @@
 """With the time step suggested in a message the run is stable and conserves its energy.
 
-Liquids and gases of water, CO2 and N2, and a single top. Each runs with steps that are
+Liquids and gases of water, CO2 and N2. Each runs with steps that are
 far too long; the test reads the step from the message, as a user would, and runs with it.
 """
 
@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from support.running import EXAMPLES
+from support.scenes import template
 
 LIQUID = """
 units {units}
@@ -47,32 +48,6 @@ pair_coeff 1 2 0 1
 kspace_style pppm 1e-4
 neighbor 2.0 bin
 neigh_modify every 1 delay 0 check yes exclude molecule/intra all
-"""
-TOP = """
-units lj
-atom_style full
-boundary f f f
-region box block -5 5 -5 5 -5 5
-create_box 1 box
-mass 1 1
-create_atoms 1 single 1 0 0
-create_atoms 1 single -1 0 0
-create_atoms 1 single 0 1.5 0
-create_atoms 1 single 0 -1.5 0
-create_atoms 1 single 0 0 0.5
-create_atoms 1 single 0 0 -0.5
-set group all mol 1
-variable vx atom -3.0*y+0.3*z
-variable vy atom 3.0*x
-variable vz atom -0.3*x
-velocity all set v_vx v_vy v_vz
-pair_style zero 3.0
-pair_coeff * *
-neigh_modify exclude molecule/intra all
-fix pull all gravity 1.0 vector 0 0 -1
-fix hold all spring tether 50 0 0 0 0
-fix_modify pull energy yes
-fix_modify hold energy yes
 """
 RUN = """
 reset_timestep 0
@@ -113,43 +88,29 @@ TOO_LONG = {
     "water": (100, 7),
     "co2": (300, 60),
     "n2": (200, 40),
-    "top": (10, 1),
 }
 #: drift in a run, in units of the kinetic energy
 MOST_DRIFT = 0.02
-
-
-def molecule(name):
-    places, kinds, charges = SITES[name]
-
-    def section(title, rows):
-        return f"\n{title}\n\n" + "".join(f"{k} {row}\n" for k, row in enumerate(rows, 1))
-
-    text = f"{name}\n\n{len(kinds)} atoms\n"
-    text += section("Coords", [f"{x} {y} {z}" for x, y, z in places])
-    return text + section("Types", kinds) + section("Charges", charges)
 
 
 def deck(lmp, name, dt, steps):
     run = RUN.format(dt=dt, steps=steps)
     if name == "water":
         return WATER.format(examples=EXAMPLES) + run
-    if name == "top":
-        return TOP + run
-    (lmp.folder / f"{name}.mol").write_text(molecule(name))
+    (lmp.folder / f"{name}.mol").write_text(template(*SITES[name]))
     return LIQUID.format(name=name, **LIQUIDS[name]) + run
 
 
 def test_a_much_longer_step_between_runs(lmp_tree):
     """Histories are not rescaled by a factor of 25, which would amplify small errors."""
-    (lmp_tree.folder / "co2.mol").write_text(molecule("co2"))
+    (lmp_tree.folder / "co2.mol").write_text(template(*SITES["co2"]))
     result = lmp_tree.succeed(LIQUID.format(name="co2", **LIQUIDS["co2"]))
     assert "the time step has changed by more than a factor of two; histories are rebuilt" in result.words
 
 
 def test_overlaps(lmp_tree):
     """A run with the keywords of the message removes the energy of the overlaps."""
-    (lmp_tree.folder / "n2.mol").write_text(molecule("n2"))
+    (lmp_tree.folder / "n2.mol").write_text(template(*SITES["n2"]))
     text = LIQUID.format(name="n2", **(LIQUIDS["n2"] | dict(lattice=2.6)))
     fix, run = "fix move all gear/quat molecule", "timestep 1.0\nthermo 50\nrun 300\n"
     begin = text.partition("fix move")[0]

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support.scenes import one_after_the_other, water, water_data
+from support.scenes import one_after_the_other, template, water, water_data
 
 # Dumbbells on a lattice with few collisions: soft spheres, so that forces are smooth
 GAS = """
@@ -27,7 +27,7 @@ thermo_modify norm no format float %.17g
 thermo {every}
 {run}
 """
-DUMBBELL = "# dumbbell\n2 atoms\nCoords\n\n1 -0.5 0 0\n2 0.5 0 0\n\nTypes\n\n1 1\n2 1\n"
+DUMBBELL = template([(-0.5, 0, 0), (0.5, 0, 0)])
 TAKEN, T_ROTATION = "f_move[9]", "f_move[11]"
 
 
@@ -67,19 +67,6 @@ def test_any_length_and_few_steps_of_damping(lmp_tree, gas, length):
     ]
     for table in lmp_tree.succeed(one_after_the_other(decks)).thermo:
         assert change(table) < 2e-3
-
-
-def test_the_order_is_that_of_the_method(lmp_tree, gas):
-    """For a stiff chain this is tested from the second run on, because the first run begins with its transient."""
-    errors = []
-    for dt in (0.04, 0.02):
-        steps = round(1.6 / dt)
-        words = "values 6 corrector gear temp 1.5 1.5 1.0"
-        deck = gas(words, n=12, dt=dt, soft=0.0, run=f"run {steps}\nrun {2 * steps}", every=1)
-        _, table = lmp_tree.succeed(deck).thermo
-        errors.append(np.ptp(table["Econserve"]))
-    assert np.log2(errors[0] / errors[1]) > 4.5
-    assert errors[0] < 1e-4 * np.max(np.abs(table[TAKEN]))
 
 
 # --- a first script for water -------------------------------------------------------------------

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import MOLECULES, difference, largest_change, last_frame, one_after_the_other, placed
+from support.scenes import MOLECULES, largest_change, one_after_the_other, placed, template
 from scipy.integrate import solve_ivp
 from support.insertion import INSERT, MOL, TEMPLATE, N, close, evaporating, liquid, poses
 from support.constant_temperature import COMMON, END, KINDS, cluster, continued
@@ -39,28 +39,6 @@ def test_the_conserved_quantity_follows_eps(lmp_tree, temp, digits):
         assert len(set(run[NEXT])) > 5
     assert any(np.ptp(run[LOADS]) > 0 for run in runs)
     assert sum(run[REPEATED][-1] for run in runs) > 5
-
-
-def test_a_step_made_again_leaves_the_chains_as_if_met_at_once(lmp_tree):
-    """A dump at the end of the repeated step sets its length from the beginning."""
-    words = f"{TEMP} thermostat separate"
-    (whole,) = tables(lmp_tree.succeed(changing(words, "1e-8 energy", "run 200")))
-    again = np.flatnonzero(np.diff(whole[REPEATED]) == 1) + 1
-    fails = again[again > 3][0]
-    at = f"{whole['Time'][fails]:.17g}"
-    ends = []
-    for dump in ("", f"dump even all custom 1 even.dump id\ndump_modify even every/time {at}"):
-        run = f"run {fails - 2}\n{dump}\nrun 2\n{END.format('a')}"
-        *_, last = tables(lmp_tree.succeed(changing(words, "1e-8 energy", run)))
-        ends.append((last, last_frame(lmp_tree.folder / "a.end")))
-    (repeated, end), (at_once, same) = ends
-    assert repeated[REPEATED][-1] == at_once[REPEATED][-1] + 1
-    assert repeated["Time"][-1] == pytest.approx(at_once["Time"][-1], rel=1e-13)
-    assert repeated[LOADS][-2] == at_once[LOADS][-2]
-    assert difference(end, same) < 1e-13
-    for column in (TAKEN, XI):
-        assert repeated[column][-1] == pytest.approx(at_once[column][-1], rel=1e-11, abs=1e-13)
-        assert repeated[column][-1] != pytest.approx(repeated[column][-2], rel=1e-6, abs=0)
 
 
 # --- bodies that hardly rotate ------------------------------------------------------------------
@@ -130,7 +108,7 @@ def test_cold_rotation_beside_one_chain_stays_cold(lmp_tree, kind):
 
 # --- insertion and removal ----------------------------------------------------------------------
 
-TRIANGLE = "tri\n\n3 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n3 0 1.1 0.2\n\nTypes\n\n1 1\n2 1\n3 1\n"
+TRIANGLE = template([(0, 0, 0), (1, 0, 0), (0, 1.1, 0.2)])
 COMES = """
 region there block 4.0 4.1 1.5 1.6 1.5 1.6
 fix in all deposit 1 0 1 4711 region there near 0.5 mol tri rigid move vx -0.3 -0.3 vy 0.1 0.1 vz 0.1 0.1

@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 from support.running import EXAMPLES
-from support.scenes import UNITS, assigned, one_after_the_other, restarted, two_molecules, water, water_data, whole_deck
+from support.scenes import TWO_SITES, UNITS, assigned, one_after_the_other, restarted, two_molecules, water, water_data, whole_deck
 from support.step_control import (
     ELEMENTS,
     HELD,
@@ -244,8 +244,7 @@ def test_a_shortest_step_that_is_too_long_is_named(lmp_tree):
 
 def test_no_bodies_yet(lmp_tree):
     """The step does not grow as long as its limit is unknown."""
-    molecule = "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n"
-    (lmp_tree.folder / "molecule.two").write_text(molecule)
+    (lmp_tree.folder / "molecule.two").write_text(TWO_SITES)
     template = dict(before="molecule two molecule.two", words="mol two")
     deck = meeting(1e-8, "lj/cut 2.5", INSERTED, [], [], **template)
     empty, run = tables(lmp_tree.succeed(deck))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import one_after_the_other, placed, water, water_data
+from support.scenes import TWO_SITES, one_after_the_other, placed, water, water_data
 from support.step_control import (
     HELD,
     INSERTED,
@@ -164,8 +164,7 @@ def test_free_flight_for_a_million(lmp_tree):
 
 def test_bodies_that_come_into_the_way(lmp_tree):
     """Inserted bodies collide with others, and no step has an error above eps."""
-    molecule = "two\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n"
-    (lmp_tree.folder / "molecule.two").write_text(molecule)
+    (lmp_tree.folder / "molecule.two").write_text(TWO_SITES)
     template = dict(before="molecule two molecule.two", words="mol two")
     run = INSERTED.replace("deposit 3 0 200", "deposit 8 0 60").replace("run 700", "run 3000")
     deck = meeting("1e-8", SMOOTH, run, [], [], **template)

@@ -8,29 +8,11 @@ import re
 import numpy as np
 import pytest
 from support.running import EXAMPLES
-from support.scenes import largest_change, last_frame, one_after_the_other
+from support.scenes import largest_change, last_frame, one_after_the_other, template
 from support.constant_temperature import KINDS, TEMP, cluster
 from support.step_control import tables
 
-DUMBBELL = """d
-
-2 atoms
-1 bonds
-
-Coords
-
-1 -0.3 0 0
-2 0.3 0 0
-
-Types
-
-1 1
-2 2
-
-Bonds
-
-1 1 1 2
-"""
+DUMBBELL = template([(-0.3, 0, 0), (0.3, 0, 0)], [1, 2], bonds=[(1, 2)])
 # Eight of them, with opposite charges that only fields act on; the first is also a group.
 DUMBBELLS = """
 units lj
@@ -149,16 +131,6 @@ def test_numbers_that_are_refused(lmp_tree, words, number, message):
     lmp_tree.refuse(deck.replace("f_move[10] f_move[11]", ""), message, ranks=2)
 
 
-def test_the_order_of_definition_does_not_matter(lmp_tree):
-    field = "fix it all addforce 0 0 0.01"
-    decks = [dumbbells(lmp_tree, after, WORDS, before, run="run 0") for after, before in ((field, ""), ("", field))]
-    result = lmp_tree.succeed(one_after_the_other(decks))
-    assert said(result.log) == 2 * [(24, "", 16)]
-    one, other = result.thermo
-    assert one["f_move[10]"] == pytest.approx(other["f_move[10]"], rel=1e-13)
-    assert one["f_move[10]"][0] == pytest.approx(relative(one, "")[0] / 24, rel=1e-12)
-
-
 def test_atoms_outside_and_another_fix(lmp_tree):
     """Bodies of another fix are atoms outside, too; atoms that another fix inserts count from then on."""
     atom = "create_atoms 1 single 0.2 0.2 1.7\ngroup bodies molecule > 0\ngroup free subtract all bodies"
@@ -186,53 +158,6 @@ def test_a_plane(lmp_tree):
     assert [one[::2] for one in said(log)] == [(4, 2), (5, 2)]
     assert "without those of the total momentum, and 2" in log
     assert "without those of the total momentum along x, and 2" in log
-
-
-CHARGED_FRAME = """
-units real
-atom_style full
-atom_modify map array
-region box block 0 20 0 20 0 20
-create_box 4 box
-lattice sc 5.0
-create_atoms 3 box
-set group all type/fraction 4 0.5 4711
-set type 3 charge 0.3
-set type 4 charge -0.3
-variable neutral equal -charge(all)/count(all)
-variable charge atom q+v_neutral
-set group all charge v_charge
-group frame type 3 4
-create_atoms 1 single 7.5 7.5 7.5 units box
-create_atoms 2 single 8.66 7.5 7.5 units box
-create_atoms 2 single 6.34 7.5 7.5 units box
-group gas type 1 2
-set type 1 charge 0.7
-set type 2 charge -0.35
-set group gas mol 1
-mass 1 12.011
-mass 2 15.9994
-mass 3*4 28.0
-pair_style lj/cut/coul/long 9.0
-pair_coeff * * 0.1 3.0
-kspace_style pppm 1e-4
-neigh_modify exclude group frame frame exclude group gas gas
-velocity gas {velocity}
-fix move gas gear/quat molecule temp 300 300 100 {words}
-timestep 1.0
-thermo_style custom step f_move[10] f_move[11] f_move[12]
-thermo 20
-run 200
-"""
-
-
-@pytest.mark.parametrize("velocity", ["create 300 4711 mom no", "set 0.004 0.002 0"])
-def test_a_molecule_in_a_charged_frame(lmp_tree, velocity):
-    """A single molecule without rotation is thermostatted, as is its rotation, from the first step on."""
-    result = lmp_tree.succeed(CHARGED_FRAME.format(velocity=velocity, words="thermostat separate"))
-    assert said(result.log) == [(3, "", 2)]
-    assert result.thermo[0]["f_move[10]"][0] > 0.0
-    assert 0.0 < max(result.thermo[0]["f_move[11]"][1:]) < 3000.0
 
 
 @pytest.mark.parametrize("mesh", ["pppm 1e-4", "pppm 1e-4\nkspace_modify diff ad"])

@@ -4,12 +4,10 @@ from itertools import permutations
 
 import numpy as np
 import pytest
-from support.scenes import one_after_the_other
+from support.scenes import one_after_the_other, template
 
-TRIANGLE = "triangle\n\n3 atoms\n\nCoords\n\n1 0 0 0\n2 0.8 0.58 0\n3 -0.8 0.58 0\n\nTypes\n\n1 1\n2 1\n3 1\n"
-ROD = "rod\n\n5 atoms\n\nCoords\n\n{}\n\nTypes\n\n{}\n".format(
-    "\n".join(f"{k + 1} {k - 2} 0 0" for k in range(5)), "\n".join(f"{k + 1} 1" for k in range(5))
-)
+TRIANGLE = template([(0, 0, 0), (0.8, 0.58, 0), (-0.8, 0.58, 0)])
+ROD = template([(k, 0, 0) for k in range(-2, 3)])
 LINES = {
     "flat": "fix flat all enforce2d",
     "bath": "fix bath all langevin 1.0 1.0 0.5 {seed}",

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import one_after_the_other
+from support.scenes import one_after_the_other, template
 
 ANGLES = np.arange(12) * np.pi / 6
 PLATE = [
@@ -51,10 +51,7 @@ CREATE = "velocity all create 1.5 4711 {}"
 
 def deck(lmp, shape, before="", after="", free="", words="", run="run 1"):
     sites = SHAPES[shape]
-    lines = ["m", "", f"{len(sites)} atoms", "", "Coords", ""]
-    lines += [f"{k} {x:.9f} {y:.9f} {z:.9f}" for k, (x, y, z) in enumerate(sites, 1)]
-    lines += ["", "Types", ""] + [f"{k} {1 + (k > 1)}" for k in range(1, len(sites) + 1)]
-    (lmp.folder / f"{shape}.mol").write_text("\n".join(lines) + "\n")
+    (lmp.folder / f"{shape}.mol").write_text(template(sites, [1 + (k > 0) for k in range(len(sites))]))
     return DECK.format(file=f"{shape}.mol", before=before, after=after, free=free, words=words, run=run)
 
 

@@ -3,8 +3,9 @@
 import re
 
 import pytest
+from support.scenes import template
 
-TRIMER = "trimer\n\n3 atoms\n\nCoords\n\n1 0 0 0\n2 0.9 0 0\n3 0.2 0.8 0\n\nTypes\n\n1 1\n2 1\n3 1\n"
+TRIMER = template([(0, 0, 0), (0.9, 0, 0), (0.2, 0.8, 0)])
 GAS = """
 units lj
 atom_style full

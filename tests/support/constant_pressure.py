@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from support.scenes import one_after_the_other, random_rotation, water_data
+from support.scenes import one_after_the_other, random_rotation
 
 ARMS = np.array([[0.0, 0.25, 0.0], [0.3, -0.15, 0.05], [-0.2, -0.1, -0.1]])
 MASSES = np.array([1.0, 0.7, 1.3])
@@ -114,35 +114,6 @@ def distances(rows: np.ndarray, box: np.ndarray) -> np.ndarray:
     """Distances between the sites of each trimer in a frame, with these edges of the box."""
     sites = (rows[:, :3] + rows[:, 6:9] * box).reshape(-1, 3, 3)
     return np.linalg.norm(sites - np.roll(sites, 1, axis=1), axis=2)
-
-
-def scaled_water(path, factors):
-    """The water of scenes.py with centers and edges scaled by these factors."""
-    water_data(path, spacing=3.3, shift=1.65)
-    text = path.read_text()
-    head, _, rest = text.partition("Atoms # full\n")
-    rows, _, tail = rest.strip("\n").partition("\n\nVelocities")
-    atoms = np.array([row.split() for row in rows.splitlines()], float)
-    masses = np.where(atoms[:, 2] == 1, 15.9994, 1.008)
-    for molecule in np.unique(atoms[:, 1]):
-        of = atoms[:, 1] == molecule
-        center = masses[of] @ atoms[of, 4:7] / masses[of].sum()
-        atoms[of, 4:7] += (np.array(factors) - 1.0) * center
-    lines = []
-    for line in head.splitlines():
-        words = line.split()
-        if len(words) == 4 and words[2].endswith("lo"):
-            k = "xyz".index(words[2][0])
-            line = f"{float(words[0]) * factors[k]:.17g} {float(words[1]) * factors[k]:.17g} {words[2]} {words[3]}"
-        lines.append(line)
-    head = "\n".join(lines).replace("2 atom types", "2 atom types\n54 bonds\n1 bond types\n27 angles\n1 angle types")
-    bonds = [f"{2 * m + h - 1} 1 {3 * m + 1} {3 * m + h + 1}" for m in range(27) for h in (1, 2)]
-    angles = [f"{m + 1} 1 {3 * m + 2} {3 * m + 1} {3 * m + 3}" for m in range(27)]
-    tail += "\nBonds\n\n" + "\n".join(bonds) + "\n\nAngles\n\n" + "\n".join(angles)
-    whole = ["%d %d %d" % tuple(row[:3]) + "".join(f" {w:.17g}" for w in row[3:7]) +
-             "".join(" %d" % w for w in row[7:]) for row in atoms]
-    path.write_text(head + "\n\nAtoms # full\n\n" + "\n".join(whole) + "\n\nVelocities" + tail + "\n")
-    return path
 
 
 # The second derivative is discontinuous at the cutoff, which is between two shells of neighbors of small molecules.

@@ -157,29 +157,29 @@ WATER_SITES = np.array(
 )
 WATER_SITES -= WATER_MASSES @ WATER_SITES / WATER_MASSES.sum()
 
+
+def template(sites, types=(), charges=(), bonds=()) -> str:
+    """A file for LAMMPS' command molecule; sites of type 1, and bonds between pairs of them, unless given otherwise."""
+    parts = {"Coords": sites, "Types": [[kind] for kind in types or [1] * len(sites)]}
+    parts |= {"Charges": [[charge] for charge in charges]} if charges else {}
+    parts |= {"Bonds": [[1, *pair] for pair in bonds]} if bonds else {}
+    counts = f"{len(sites)} atoms\n" + f"{len(bonds)} bonds\n" * bool(bonds)
+    lines = ["rigid body", "", counts]
+    for name, rows in parts.items():
+        numbered = (" ".join(f"{w:.17g}" for w in (k, *row)) for k, row in enumerate(rows, 1))
+        lines += [name, "", *numbered, ""]
+    return "\n".join(lines)
+
+
 # the same molecule for LAMMPS' command molecule
-SPCE = """rigid water
-
-3 atoms
-
-Coords
-
-1 0 0 0
-2 0.81649658092772603 0.57735026918962576 0
-3 -0.81649658092772603 0.57735026918962576 0
-
-Types
-
-1 1
-2 2
-3 2
-
-Charges
-
-1 -0.8476
-2 0.4238
-3 0.4238
-"""
+SPCE = template(
+    [(0, 0, 0), (0.81649658092772603, 0.57735026918962576, 0), (-0.81649658092772603, 0.57735026918962576, 0)],
+    [1, 2, 2], [-0.8476, 0.4238, 0.4238],
+)  # fmt: skip
+#: a template of a neutral molecule with a dipole moment of 0.3 and three moments of inertia
+TRIMER = template([(0, 0, 0), (0.6, 0, 0), (0, 0.7, 0)], [1, 1, 2], [0.5, -0.5, 0])
+#: and of the smallest body that rotates
+TWO_SITES = template([(0, 0, 0), (1, 0, 0)])
 
 
 def random_rotation(rng: np.random.Generator) -> np.ndarray:
@@ -206,31 +206,6 @@ def write_data(path: Path, box: list[str], masses, atoms: list, velocities: list
     return path
 
 
-#: a template of a neutral molecule with a dipole moment of 0.3 and three moments of inertia
-TRIMER = """trimer
-
-3 atoms
-
-Coords
-
-1 0 0 0
-2 0.6 0 0
-3 0 0.7 0
-
-Types
-
-1 1
-2 1
-3 2
-
-Charges
-
-1 0.5
-2 -0.5
-3 0
-"""
-
-
 def water_data(
     path: Path,
     n: int = 3,
@@ -238,19 +213,20 @@ def water_data(
     spacing: float = 3.3,
     tilt: float = 0.0,
     shift: float = 0.0,
+    factors=(1.0, 1.0, 1.0),
 ) -> Path:
     """n^3 rigid SPC/E molecules near a lattice, with random orientations and velocities, across all boundaries.
 
-    If shifted by half a spacing (Angstrom), all of them are inside the box.
+    If shifted by half a spacing (Angstrom), all of them are inside the box; ``factors`` scale its edges and the centers.
     """
     rng = np.random.default_rng(20251121)
     scale = UNITS[units]
-    box = np.diag([n * spacing] * 3)  # rows are its vectors
+    box = np.diag(n * spacing * np.array(factors))  # rows are its vectors
     box[1, 0] = tilt
     charges = WATER_CHARGES * scale["charge"]
     atoms, velocities = [], []
     for molecule, cell in enumerate(np.ndindex(n, n, n), 1):
-        center = np.array(cell) * spacing + shift + rng.uniform(-0.1, 0.1, 3)
+        center = (np.array(cell) * spacing + shift + rng.uniform(-0.1, 0.1, 3)) * factors
         arms = WATER_SITES @ random_rotation(rng).T
         velocity, spin = rng.normal(size=3) * 0.003, rng.normal(size=3) * 0.01
         x = center + arms
@@ -259,12 +235,26 @@ def water_data(
         atoms += np.column_stack([[molecule] * 3, [1, 2, 2], charges, x, image]).tolist()
         speed = (velocity + np.cross(spin, arms)) * scale["length"] / scale["time"]
         velocities += speed.tolist()
-    length = f"{n * spacing * scale['length']:.17g}"
-    lines = [f"0 {length} {axis}lo {axis}hi" for axis in "xyz"]
+    lines = [f"0 {box[k, k] * scale['length']:.17g} {axis}lo {axis}hi" for k, axis in enumerate("xyz")]
     if tilt:
         lines.append(f"{tilt * scale['length']:.17g} 0 0 xy xz yz")
     masses = [WATER_MASSES[k] * scale["mass"] for k in (0, 1)]
     return write_data(path, lines, masses, atoms, velocities)
+
+
+def with_bonds(data: Path, *more: str) -> Path:
+    """The same molecules with bonds and angles; more: a type and two atoms of each further bond."""
+    text = data.read_text()
+    oxygens = range(1, int(re.search(r"(\d+) atoms", text)[1]), 3)
+    bonds = [*(f"1 {o} {o + k}" for o in oxygens for k in (1, 2)), *more]
+    sections = {"bond": bonds, "angle": [f"1 {o + 1} {o} {o + 2}" for o in oxygens]}
+    for name, rows in sections.items():
+        kinds = len({row.split()[0] for row in rows})
+        text = text.replace("\nMasses", f"{len(rows)} {name}s\n{kinds} {name} types\n\nMasses", 1)
+        text += "\n".join(["", f"{name.capitalize()}s", "", *(f"{k} {row}" for k, row in enumerate(rows, 1)), ""])
+    path = data.with_name(f"{data.name}.bonds")
+    path.write_text(text)
+    return path
 
 
 def flat_water_data(path: Path, n: int = 4, spacing: float = 3.3) -> Path:

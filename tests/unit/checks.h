@@ -92,24 +92,4 @@ template <class F> void derivative(F f, int n, double h, double *out)
   for (int i = 0; i < n; ++i) out[i] = (8.0 * (p1[i] - m1[i]) - (p2[i] - m2[i])) / (12.0 * h);
 }
 
-/// Rows of a history at time t, step h, for polynomials with these coefficients: `width` of them
-/// for each power of the time.
-inline std::vector<double> polynomial_rows(const std::vector<double> &a, int width, double t,
-                                           double h)
-{
-  const int n = int(a.size()) / width;
-  std::vector<double> rows(a.size(), 0.0);
-  double hj = 1.0;
-  for (int j = 0; j < n; ++j, hj *= h)
-    for (int c = 0; c < width; ++c) {
-      double tk = 1.0, binomial = 1.0;    // t^(k-j), k over j
-      for (int k = j; k < n; ++k) {
-        rows[j * width + c] += hj * binomial * a[k * width + c] * tk;
-        binomial = binomial * (k + 1) / (k + 1 - j);
-        tk *= t;
-      }
-    }
-  return rows;
-}
-
 }    // namespace Check

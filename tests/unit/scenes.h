@@ -91,10 +91,10 @@ inline Scene oscillator(double time, double strength = 1.0, bool of_velocity = f
 }
 
 /// The orientation of the free asymmetric top; |omega| is 1.2.
-inline Scene free_top(const RigidBody &body = TOP)
+inline Scene free_top()
 {
   static const BodyState start = top_state(0.0), end = top_state(24.0);
-  return {body, start, free_of_load, 24.0, [](const BodyState &s) {
+  return {TOP, start, free_of_load, 24.0, [](const BodyState &s) {
             return Check::attitude_distance(s.q, end.q);
           }};
 }

@@ -77,12 +77,6 @@ TEST(Tables, OfTheLiteratureForSecondOrder)
   }
 }
 
-TEST(Tables, OfAdamsAndMoulton)
-{
-  const R known[] = {{1, 2}, {1, 12}, {1, 24}, {19, 720}, {3, 160}, {863, 60480}, {275, 24192}};
-  for (int k = 1; k <= 7; ++k) EXPECT_EQ(rational_of(adams_moulton(k)), known[k - 1]) << k;
-}
-
 TEST(ErrorWeights, AreThoseOfTheDerivationAndDifferencesOfNeighboringC0)
 {
   const auto weight2 = [](Formulation formulation, int n) {

@@ -91,18 +91,6 @@ TEST(ErrorEstimate, IsTheWeightTimesTheResiduals)
     }
 }
 
-TEST(ErrorEstimate, FallsWithThePowerN)
-{
-  for (const Scheme &scheme : every_scheme(2, true)) {
-    const double h = scheme.values() > 10 ? 0.08 : 0.05;
-    const Errors wide = top_run(scheme, 1.5 * h), narrow = top_run(scheme, h);
-    EXPECT_NEAR(std::log(wide.position / narrow.position) / std::log(1.5), scheme.values(), 0.1)
-        << scheme;
-    EXPECT_NEAR(std::log(wide.angle / narrow.angle) / std::log(1.5), scheme.values(), 0.6)
-        << scheme;
-  }
-}
-
 // --- accuracy
 
 TEST(ErrorEstimate, SecondFormulationAgainstTheTrueLocalError)

@@ -61,17 +61,6 @@ TEST(ExactSum, AsExactAsADouble)
   }
 }
 
-TEST(ExactSum, AScaleIsAPowerOfTwo)
-{
-  for (const double number : {0.3, 1.0, 1.5, 3.0e-20, 6.0e17}) {
-    int exponent;
-    const double scale = ExactSum::scale_of(number);
-    EXPECT_EQ(std::frexp(scale, &exponent), 0.5);
-    EXPECT_GT(scale, number);
-    EXPECT_LE(scale, 2.0 * number);
-  }
-}
-
 TEST(ExactSum, WhatIsNotFiniteShows)
 {
   const double infinite = std::numeric_limits<double>::infinity();

@@ -71,12 +71,6 @@ TEST(Turn, HasTheOrderOfItsSeries)
   }
 }
 
-TEST(Turn, IsAccurateForFastRotations)
-{
-  for (const double h : {0.1, 0.3, 1.0})
-    EXPECT_LT(error_of_turn(Wobble(h), Turn(8)), 1.0e-9 * h) << h;
-}
-
 TEST(Turn, CoefficientsAddUpToTheTurn)
 {
   const Wobble wobble(0.1);
@@ -87,27 +81,6 @@ TEST(Turn, CoefficientsAddUpToTheTurn)
     for (int i = 0; i < 4; ++i) sum[i] += term[i];
   Turn(wobble.terms).advance(TOP, wobble.rows, q);
   EXPECT_LT(Check::largest_difference(sum, q, 4), 1.0e-13);
-}
-
-TEST(Turn, ABodyDoesNotDependOnItsNeighbor)
-{
-  const RigidBody other = {1.0, {0.2, 0.3, 0.0}};
-  const RigidBody *bodies[] = {&TOP, &other};
-  constexpr int WIDTH = Scheme::SECOND_WIDTH;
-  const Wobble wobbles[] = {Wobble(0.05), Wobble(0.6)};
-  double rows[2][9][WIDTH] = {{{0.1, 0.1, 0.7, 0.7}}, {{0.5, 0.5, 0.5, 0.5}}};
-  const double *first[] = {rows[0][0], rows[1][0]};
-  for (int body = 0; body < 2; ++body)
-    for (int k = 0; k < 8; ++k)
-      for (int i = 0; i < 3; ++i) rows[body][k + 1][i] = wobbles[body].rows[k][i] / (k + 1);
-  double both[2][4], alone[4];
-  const Turn turn(8);
-  for (int k = 0; k < 2; k += LANES)
-    turn.changes(std::min(2, LANES), bodies + k, first + k, WIDTH, both + k);
-  for (int k = 0; k < 2; ++k) {
-    turn.changes(1, bodies + k, first + k, WIDTH, &alone);
-    for (int i = 0; i < 4; ++i) EXPECT_EQ(both[k][i], alone[i]);
-  }
 }
 
 TEST(Momentum, BodiesSideBySideMoveAsEachAlone)

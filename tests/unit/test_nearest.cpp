@@ -86,19 +86,6 @@ double left_by(const Move &move, const Vectors &arms, const Vectors &motions)
 
 }    // namespace
 
-TEST(NearestTwist, OfARigidMotionIsThatMotion)
-{
-  Check::Numbers numbers(31);
-  const Vectors arms = some_arms(numbers, 4);
-  const vector<double> way = numbers.list(3), turn = numbers.list(3);
-  Vectors vectors(arms.size(), vector<double>(3));
-  const Twist given = {{way[0], way[1], way[2]}, {turn[0], turn[1], turn[2]}};
-  for (size_t n = 0; n < arms.size(); ++n) way_of_site(given, arms[n], vectors[n].data());
-  const Twist found = nearest_to(arms, vectors);
-  EXPECT_LT(Check::largest_difference(found.way, way.data(), 3), 1e-13);
-  EXPECT_LT(Check::largest_difference(found.turn, turn.data(), 3), 1e-13);
-}
-
 /// The residual forces have neither sum nor moment, and the product of two twists as vectors on
 /// sites equals force times displacement plus torque times rotation.
 TEST(NearestTwist, IsAnOrthogonalProjection)
@@ -115,26 +102,6 @@ TEST(NearestTwist, IsAnOrthogonalProjection)
   for (const auto &one : projected) square += dot3(one.data(), one.data());
   const double power = dot3(all.force, found.way) + dot3(all.torque_space, found.turn);
   EXPECT_NEAR(square, power, 1e-13);
-}
-
-TEST(NearestTwist, DoesNotTurnALinearBodyAboutItsAxis)
-{
-  const Vectors arms = {{0.0, 0.3, 0.4}, {0.0, -0.6, -0.8}},
-                forces = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
-  const Twist found = nearest_to(arms, forces);
-  EXPECT_TRUE(found.turn[1] == 0.0 || found.turn[2] == 0.0);
-  Vectors projected = forces;
-  for (size_t n = 0; n < arms.size(); ++n) way_of_site(found, arms[n], projected[n].data());
-  EXPECT_LT(Check::largest_difference(loads_of(arms, projected).torque_space,
-                                      loads_of(arms, forces).torque_space, 3),
-            1e-14);
-}
-
-TEST(NearestTwist, OfAPointIsAWayAlone)
-{
-  const Twist found = nearest_twist({1.0, {}}, 0, {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}});
-  EXPECT_EQ(found.way[2], 3.0);
-  EXPECT_EQ(found.turn[0], 0.0);
 }
 
 TEST(NearestTwist, HoldsComponents)

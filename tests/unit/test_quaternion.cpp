@@ -28,23 +28,6 @@ TEST(Quaternion, WIsThePrintedMatrixWithItsLastRowCorrected)
   EXPECT_LE(largest_difference(out, expected, 4), 1e-15);
 }
 
-TEST(Quaternion, WTransposedUndoesW)
-{
-  Check::Numbers numbers(12);
-  const vector<double> q = numbers.list(4), a = numbers.list(4);
-  const double norm2 = dot4(q.data(), q.data());
-  const auto w = Oracle::PaperStep::w(q.data());
-  double wa[4], back[3];
-  vector<double> expected = a;
-  for (double &x : expected) x *= norm2;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j)
-      EXPECT_NEAR(dot4(w[i].data(), w[j].data()), i == j ? norm2 : 0.0, 1e-15) << i << j;
-  w_times(q.data(), a.data(), wa);
-  w_transposed_times(q.data(), wa, back);
-  EXPECT_LE(largest_difference(back, expected.data(), 3), 1e-15);
-}
-
 TEST(Quaternion, RotationMatrixIsThatOfEulerAngles)
 {
   for (double phi : {0.0, 40 * PI / 180, 2.9, -1.3})

@@ -72,14 +72,6 @@ TEST(StartPlan, WhereFewerValuesDoItEndsAsTheirsDoes)
   EXPECT_EQ(smooth(5, 0.3, 0.05, 8).pairs, smooth(5, 0.3, 0.05).pairs);
 }
 
-TEST(StartPlan, PairsAreEvaluatedAnewBeforeOneIsAdded)
-{
-  const Course slow = smooth(8, 0.1, 0.02);
-  EXPECT_EQ(slow.pairs.substr(0, 10), "1121231234");
-  EXPECT_EQ(slow.verdict, Verdict::CONVERGED);
-  EXPECT_EQ(slow.known, 4);
-}
-
 TEST(StartPlan, WhatWouldChangeLessThanTheMethodLeavesOutIsNotEvaluated)
 {
   EXPECT_EQ(smooth(8, 0.3, 1e-5).pairs, "11234");
@@ -95,33 +87,6 @@ TEST(StartPlan, MorePairsThanRoundingLeavesAreNotAdded)
   });
   EXPECT_EQ(rounding.verdict, Verdict::CONVERGED);
   EXPECT_LT(rounding.known, 4);
-}
-
-TEST(StartPlan, ForcesJumpWhereANewPairIsMissedByMoreThanTheOneInside)
-{
-  for (int jump : {2, 3, 4}) {
-    const Course c = course(8, [&](int pair, bool is_new, int) {
-      return is_new ? (pair < jump ? std::pow(0.1, pair) : std::pow(0.1, jump - 1) * 1.01)
-                    : 1e-4 * std::pow(0.1, pair);
-    });
-    EXPECT_EQ(c.verdict, Verdict::JUMPS);
-    EXPECT_EQ(c.known, jump - 1);
-    EXPECT_EQ(c.pairs.back() - '0', jump);
-  }
-  // and if a further evaluation changes little less than the previous one
-  EXPECT_EQ(course(8,
-                   [](int, bool is_new, int) {
-                     return is_new ? 0.1 : 0.06;
-                   })
-                .verdict,
-            Verdict::JUMPS);
-}
-
-TEST(StartPlan, AFirstPairThatIsMissedAltogetherIsTooFarOut)
-{
-  for (double change : {0.6, double(INFINITY), double(NAN)})
-    EXPECT_EQ(StartPlan(8).take(change), Verdict::SHORTER_SPACING);
-  EXPECT_EQ(StartPlan(8).take(0.4), Verdict::GOES_ON);
 }
 
 TEST(StartPlan, EvaluationsInTheCage)

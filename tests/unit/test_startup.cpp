@@ -79,27 +79,3 @@ TEST(Startup, TwoTermsAreThePapersZeroStart)
       }
     }
 }
-
-TEST(Startup, TimeReversal)
-{
-  // in the cage, where forces and torques depend on all coordinates
-  const CageScene scene(1, true);
-  BodyState back = scene.start;
-  for (int i = 0; i < 3; ++i) {
-    back.velocity[i] = -back.velocity[i];
-    back.omega_body[i] = -back.omega_body[i];
-  }
-  for (const Scheme &scheme : {scheme_of(FIRST), scheme_of(SECOND)}) {
-    auto start = [&](const BodyState &s, double sense) {
-      return started(scheme, scene.body, s, scene, sense * 0.02, Start::BOOTSTRAP, sense * 0.05);
-    };
-    const vector<double> forward = start(scene.start, 1.0);
-    auto reversed = [&](vector<double> rows, bool velocities) {
-      for (int i = 0; i < scheme.size(); ++i)
-        if ((i / scheme.width() + (velocities && is_rate(scheme, i))) % 2) rows[i] = -rows[i];
-      return largest_difference(rows, forward);
-    };
-    EXPECT_LT(reversed(start(back, 1.0), true), 1e-14);
-    EXPECT_LT(reversed(start(scene.start, -1.0), false), 1e-14);    // the same with a negative step
-  }
-}

@@ -1,23 +1,14 @@
-/* gear_quat_history.h and gear_quat_stability.h: the order conditions, compared with the characteristic
-   equation in exact fractions; every tuned set, for any numbers; and its response to random
-   forces. */
+/* gear_quat_history.h and gear_quat_stability.h: the orders and estimates of every tuned set, and random forces. */
 
 #include "gear_quat_stability.h"
-#include "oracles/characteristic.h"
 #include "oracles/exact_flow.h"
-#include "oracles/rational.h"
 #include "scenes.h"
 
 #include <random>
 
 using namespace Drive;
-using Oracle::Rational;
-using Oracle::rational_of;
 
 namespace {
-
-using Coefficients = vector<long double>;
-using Exact = vector<Rational>;
 
 /// Every number of values that has tuned coefficients.
 vector<Scheme> tuned_schemes()
@@ -25,55 +16,23 @@ vector<Scheme> tuned_schemes()
   return schemes_of(MOMENTUM, 1, true);
 }
 
-constexpr int ORDER = 2;    ///< of the equation
-
-/// True if the powers required by the order vanish, up to rounding; c0_free: those independent of
-/// c_0.
-bool has_order(const Exact &exact, bool c0_free)
-{
-  Coefficients c;
-  for (const Rational &x : exact) c.push_back((long double) x.numerator() / x.denominator());
-  const int n = int(c.size()), last = c0_free ? n : n + 1;
-  const Coefficients left = Oracle::characteristic(c, ORDER, last + 1);
-  return std::all_of(left.begin(), left.end(), [](long double x) {
-    return std::fabs(x) < 1e-12L;
-  });
-}
-
 }    // namespace
 
 // --- the table
 
-TEST(TunedSets, HaveTheirOrderExactly)
-{
-  for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n) {
-    const bool c0_free = n % 2;
-    const Coefficients c = tuned_coefficients(n);
-    ASSERT_EQ((int) c.size(), n);
-    Exact exact(n);
-    exact[ORDER] = 1;
-    for (int j = ORDER + 1; j < n; ++j) exact[j] = rational_of(c[j]);
-    exact = Oracle::with_head(exact, ORDER);
-    if (c0_free) exact[0] = rational_of(c[0]);
-    for (int j = 0; j < n; ++j)
-      EXPECT_NEAR(double(c[j]), exact[j].value(), 2e-16) << n << ", " << j;
-    EXPECT_TRUE(has_order(exact, c0_free)) << n;
-  }
-}
-
 TEST(TunedSets, ForgetErrorsOfTheHigherRows)
 {
   for (int n = SECOND_FEWEST; n <= SECOND_MOST; ++n) {
-    const Coefficients exact = tuned_coefficients(n);
+    const vector<long double> exact = tuned_coefficients(n);
     const vector<double> c(exact.begin(), exact.end());
     double rows[MAX_VALUES] = {};
-    for (int j = ORDER; j < n; ++j) rows[j] = 1.0;
+    for (int j = 2; j < n; ++j) rows[j] = 1.0;
     for (int step = 0; step < 800; ++step) {
       Nordsieck<1>::predict(rows, n);
-      const double residual = -rows[ORDER];
+      const double residual = -rows[2];
       Nordsieck<1>::correct<1>(rows, n, c.data(), 0, &residual);
     }
-    for (int j = ORDER; j < n; ++j) EXPECT_LT(std::fabs(rows[j]), 1e-6) << n;
+    for (int j = 2; j < n; ++j) EXPECT_LT(std::fabs(rows[j]), 1e-6) << n;
   }
 }
 

@@ -20,14 +20,6 @@ inline Matrix times(const Matrix &a, const Matrix &b)
   return c;
 }
 
-inline Matrix transposed(const Matrix &a)
-{
-  Matrix t;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) t.m[i][j] = a.m[j][i];
-  return t;
-}
-
 /// Components of a fixed vector in axes rotated by `angle` about axis 0, 1 or 2.
 inline Matrix turned_axes(int axis, long double angle)
 {
