@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import last_frame, one_after_the_other, restarted, two_molecules, water, water_data
+from support.scenes import last_frame, one_after_the_other, placed, restarted, two_molecules, water, water_data
 
 ANEW = "forces have changed since the last step; histories are rebuilt"
 FALLBACK = "start with known forces only (order 2), because"
@@ -155,40 +155,20 @@ SWAPS = {
     # a symmetric change about the center changes only the moments
     "moments": "set atom 1 mass 1.0\nset atom 2*3 mass 2.0",
 }
-ROD = """
-units lj
-atom_style {style}
-atom_modify map array
-region box block -10 10 -10 10 -10 10
-create_box 1 box
-create_atoms 1 single 0 0 0
-create_atoms 1 single 1 0 0
-create_atoms 1 single -1 0 0
-{masses}
-velocity all create 1.0 4711 loop geom
-pair_style zero 2.0
-pair_coeff * *
-fix move all gear/quat single
-thermo_style custom step f_move[1] f_move[2] f_move[1][1]
-thermo_modify norm no format float %.17g
-run 1
-{swap}
-run 1
-"""
 
 
 @pytest.mark.parametrize("swap", SWAPS)
 @pytest.mark.parametrize("extended", [False, True])
 def test_masses_that_go_from_atom_to_atom(lmp_tree, swap, extended):
     """The total mass is constant; the body has the current masses, as if the fix had been defined at that time."""
-    style = "sphere" if extended else "hybrid molecular sphere"
     masses = "set atom 1*3 diameter {} mass 1.0\nset atom 1 mass 3.0".format(0.5 if extended else 0.0)
     if swap == "center":
         masses = masses.replace("atom 1 mass 3.0", "atom 2 mass 3.0")
+    settings = dict(style="hybrid molecular sphere", masses=masses, boundary="p p p", exclude="")
+    settings |= dict(before="velocity all create 1.0 4711 loop geom", fix="gear/quat single", columns="f_move[1][1]", steps=1)
     again = "unfix move\nfix move all gear/quat single"
-    decks = [
-        ROD.format(style=style, masses=masses, swap=SWAPS[swap] + "\n" + more) for more in ("", again)
-    ]
+    runs = [f"run 1\n{SWAPS[swap]}\n{more}\nrun 1" for more in ("", again)]
+    decks = [placed([[(0, 0, 0), (1, 0, 0), (-1, 0, 0)]], run=run, energies="", **settings) for run in runs]
     result = lmp_tree.succeed(one_after_the_other(decks))
     assert result.stdout.count("atoms were changed since the last run") == 1
     _, kept, _, fresh = result.thermo

@@ -6,7 +6,7 @@ Unsupported settings are in test_bad_input.py, restarts and ranks in test_pressu
 import numpy as np
 import pytest
 from support.constant_pressure import GAUSS, distances, ends, frame, pressed, trimers
-from support.scenes import largest_change, water_data, with_bonds
+from support.scenes import largest_change, water, water_data, with_bonds
 
 EDGES = ("Lx", "Ly", "Lz")
 #: elements of the fix's vector: molecular pressures xx yy zz, target, rates of the box, its kinetic energy
@@ -40,20 +40,15 @@ def test_the_columns_belong_together(lmp_wheel):
 
 # --- the virial ---------------------------------------------------------------------------------
 
-WATER = """
-units real
-atom_style full
-atom_modify map array
-read_data {data}
-{force}
-neigh_modify every 1 delay 0
-neigh_modify exclude molecule/intra all
-velocity all set 0 0 0
-fix move all gear/quat molecule iso 0 0 100 ptemp 300
-thermo_style custom step pe vol press f_move[16] f_move[17] f_move[18] f_move[19] f_move[20] f_move[21]
-thermo_modify norm no format float %.17g
-run 0
-"""
+
+def at_rest(data, force):
+    """A deck of water without steps."""
+    columns = "vol " + " ".join(f"f_move[{k}]" for k in PRESSURES)
+    settings = dict(pair=force, skin=2.0, before="velocity all set 0 0 0", columns=columns, run="run 0")
+    deck = water(data, "gear/quat molecule iso 0 0 100 ptemp 300", **settings)
+    return deck.replace("fix_modify move energy yes", "")
+
+
 SMOOTH = """pair_style lj/gromacs/coul/gromacs 3.5 4.6
 pair_coeff * * 0.0 1.0
 pair_coeff 1 1 0.1553 3.166
@@ -95,7 +90,7 @@ def test_virial_is_the_change_of_energy_with_the_box(lmp_wheel, name):
         if axis is not None:
             factors[axis] = np.exp(d * (-2, -1, 1, 2)[(k - 1) % 4])
         data = with_bonds(water_data(lmp_wheel.folder / f"data.{k}", shift=1.65, factors=factors))
-        decks.append(WATER.format(data=data, force=force))
+        decks.append(at_rest(data, force))
     result = lmp_wheel.succeed("\nclear\n".join(decks))
     tables = result.thermo
     virial = np.array([tables[0][f"f_move[{k}]"][0] for k in PRESSURES]) * tables[0]["Volume"][0] / NKTV2P
@@ -107,8 +102,8 @@ def test_virial_is_the_change_of_energy_with_the_box(lmp_wheel, name):
 
 def test_tail_corrections_are_those_of_thermo(lmp_wheel):
     force = "pair_style lj/cut 4.5\npair_coeff * * 0.0 1.0\npair_coeff 1 1 0.1553 3.166\npair_modify tail {}\n"
-    water_data(lmp_wheel.folder / "data.0", shift=1.65)
-    decks = [WATER.format(data="data.0", force=force.format(tail)) for tail in ("no", "yes")]
+    data = water_data(lmp_wheel.folder / "data.0", shift=1.65)
+    decks = [at_rest(data, force.format(tail)) for tail in ("no", "yes")]
     without, with_tail = lmp_wheel.succeed("\nclear\n".join(decks)).thermo
     of_thermo = with_tail["Press"][0] - without["Press"][0]
     assert abs(of_thermo) > 1.0

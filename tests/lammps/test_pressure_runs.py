@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support import constant_pressure as scene
 from support.constant_pressure import REPULSIVE, apart, ends, trimers
-from support.scenes import FORMULATIONS, largest_change, one_after_the_other, water_data
+from support.scenes import FORMULATIONS, largest_change, one_after_the_other, water, water_data
 
 MODES = {
     "NPH": "iso 0.3 0.3 1.0",
@@ -172,27 +172,12 @@ def test_the_fix_again_after_its_compute_was_deleted(lmp_tree):
 
 def test_forces_that_reach_far(lmp_tree):
     """Water with PPPM and a tail correction: order of the conserved energy."""
-    water_data(lmp_tree.folder / "data.water", shift=1.65)
-    deck = """
-units real
-atom_style full
-atom_modify map array
-read_data data.water
-pair_style lj/charmm/coul/long 3.5 4.6
-pair_coeff * * 0.0 1.0
-pair_coeff 1 1 0.1553 3.166
-pair_modify table 0
-kspace_style pppm 1e-7
-kspace_modify order 7
-neigh_modify every 1 delay 0 exclude molecule/intra all
-timestep {dt}
-fix move all gear/quat molecule {words} iso 1000 1000 300 temp 300 300 100
-thermo_style custom step pe ke ecouple econserve vol
-thermo_modify norm no format float %.17g
-thermo 1
-run {steps}
-"""
-    decks = [deck.format(dt=dt, steps=round(40 / dt), words="values 5") for dt in (4.0, 2.0)]
+    data = water_data(lmp_tree.folder / "data.water", shift=1.65)
+    pair = "pair_style lj/charmm/coul/long 3.5 4.6\npair_coeff * * 0.0 1.0\npair_coeff 1 1 0.1553 3.166\npair_modify table 0\n"
+    pair += "kspace_style pppm 1e-7\nkspace_modify order 7"
+    settings = dict(pair=pair, skin=2.0, thermo=1, columns="econserve vol")
+    fix = "gear/quat molecule values 5 iso 1000 1000 300 temp 300 300 100"
+    decks = [water(data, fix, dt=dt, steps=round(40 / dt), **settings).replace("fix_modify move energy yes", "") for dt in (4.0, 2.0)]
     result = lmp_tree.succeed(one_after_the_other(decks))
     changes = [largest_change(table) for table in result.thermo]
     assert np.log2(changes[0] / changes[1]) > 3.4, changes

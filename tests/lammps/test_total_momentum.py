@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 from support.running import EXAMPLES
-from support.scenes import largest_change, last_frame, one_after_the_other, template
+from support.scenes import largest_change, last_frame, one_after_the_other, template, water
 from support.constant_temperature import KINDS, TEMP, cluster
 from support.step_control import tables
 
@@ -163,24 +163,10 @@ def test_a_plane(lmp_tree):
 @pytest.mark.parametrize("mesh", ["pppm 1e-4", "pppm 1e-4\nkspace_modify diff ad"])
 def test_a_mesh_is_no_force_from_outside(lmp_tree, mesh):
     """Forces that are derivatives of an interpolated energy do not add up to zero."""
-    water = f"""
-        units real
-        atom_style full
-        read_data {EXAMPLES / "water/data.water"}
-        velocity all create 300.0 4711
-        pair_style lj/cut/coul/long 8.0
-        pair_coeff 1 1 0.1553 3.166
-        pair_coeff 2 2 0.0 1.0
-        pair_coeff 1 2 0.0 1.0
-        kspace_style {mesh}
-        neigh_modify exclude molecule/intra all
-        fix move all gear/quat molecule temp 300 300 100
-        compute f all reduce sum fx fy fz
-        thermo_style custom step temp c_f[*]
-        thermo 1
-        run 5
-        """
-    result = lmp_tree.succeed(water)
+    pair = f"pair_style lj/cut/coul/long 8.0\npair_coeff * * 0.0 1.0\npair_coeff 1 1 0.1553 3.166\nkspace_style {mesh}"
+    settings = dict(before="velocity all create 300.0 4711", after="compute f all reduce sum fx fy fz", columns="c_f[3]")
+    deck = water(EXAMPLES / "water/data.water", "gear/quat molecule temp 300 300 100", dt=1.0, steps=5, thermo=1, pair=pair, **settings)
+    result = lmp_tree.succeed(deck.replace("fix_modify move energy yes", ""))
     assert said(result.log) == [(645, "xyz", 648)]
     found = np.abs(result.thermo[0]["c_f[3]"]).max()
     assert found > 0.01 if "ad" in mesh else found < 1e-9
