@@ -15,7 +15,6 @@ of a study are its own, are used in its modules only, and keep their names.  The
     lab.sweep(name, deck, axes, read, settings)   every combination of values of variables -> read(finished)
     lab.many({name: Job(deck, variables, steps)}) side by side, --jobs at once -> {name: Finished}
     lab.in_turn(jobs, rounds)                     one at a time, for timing -> {name: [Finished, ...]}
-    lab.share(0.3)                                a context: its work fills that part of the progress bar
     lab.quick, lab.hours                          the requested options
 
 Where starting LAMMPS would take longer than the run, session.py keeps it in a process, times the ``run``

@@ -3,12 +3,8 @@
 import importlib
 import json
 import pkgutil
-import threading
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-
-from tqdm import tqdm
 
 from benchmarks import studies
 
@@ -18,7 +14,6 @@ from .page import file_of, render
 from .publish import PublishError, check_places, publish
 from .store import read_data, write_csv, write_data
 
-BAR = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining}"
 ORIGIN, DATA = "origin.json", "data.json"
 
 
@@ -37,30 +32,11 @@ class Origin:
     whole: bool
 
 
-@contextmanager
-def ticking(tick):
-    """Within this context, call ``tick`` every second, so that the bar shows the elapsed time."""
-    ended = threading.Event()
-
-    def work():
-        while not ended.wait(1.0):
-            tick()
-
-    thread = threading.Thread(target=work, daemon=True)
-    thread.start()
-    try:
-        yield
-    finally:
-        ended.set()
-        thread.join()
-
-
 def measure(study, out, **options):
     """Measure and keep data and their origin in ``out``; ``options`` are passed to Lab."""
     out.mkdir(parents=True, exist_ok=True)
     at = provenance.commit("src", "benchmarks", "examples")
-    with tqdm(total=1.0, bar_format=BAR, desc=study.key, disable=None) as bar, ticking(bar.refresh):
-        data = study.measure(Lab(out, advance=bar.update, **options))
+    data = study.measure(Lab(out, **options))
     origin = {"sentence": provenance.sentence(out, at), "whole": not options.get("quick")}
     write_data(out / DATA, data)
     (out / ORIGIN).write_text(json.dumps(origin, indent=1), encoding="utf-8")

@@ -4,10 +4,11 @@ import itertools
 import threading
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+
+from tqdm import tqdm
 
 from lammps_gearquat.logs import Log
 
@@ -19,7 +20,7 @@ from .sites import read_sites
 class Job:
     """One run of the ``deck`` at a path, with ``variables`` (name -> value) on this number of ``ranks``.
 
-    ``steps`` determines the order of the jobs and their weights in the progress bar.
+    Jobs of more ``steps`` are run first.
     """
 
     deck: Path
@@ -51,40 +52,18 @@ class Lab:
     """Runs jobs; ``out`` is the folder that gets ``logs`` and ``dumps``.
 
     ``jobs``: number of simultaneous runs.  ``quick``: whether the study should do less.  ``hours``: duration of a study
-    that never ends by itself.  ``advance(part)`` receives the part of the work of the study that has been done since its
-    last call.
+    that never ends by itself.
     """
 
-    def __init__(self, out, lmp=None, jobs=2, quick=False, hours=1.0, advance=None):
+    def __init__(self, out, lmp=None, jobs=2, quick=False, hours=1.0):
         self.out, self.jobs = Path(out), jobs
         self.quick, self.hours = quick, hours
-        self._lmp, self._lock = lmp, threading.Lock()
-        self._weight = self._left = 1.0
-        self._advance = advance or (lambda part: None)
+        self._lmp = lmp
 
     @property
     def lmp(self):
         """The LAMMPS program.  Raises LammpsError if there is none."""
         return find_lmp(self._lmp)
-
-    @contextmanager
-    def share(self, part):
-        """Within this context, all work counts as ``part`` of the work of the study.
-
-        At the end of the context the bar has moved by this part, whatever the amount of work.
-        """
-        weight, left = self._weight, self._left
-        self._weight, self._left = weight * part, 1.0
-        yield
-        self.advance(self._left)
-        self._weight, self._left = weight, left - part
-
-    def advance(self, part):
-        """Report that ``part`` of the work of the current share is done, or the remaining part if it is smaller."""
-        with self._lock:
-            part = min(part, self._left)
-            self._left -= part
-            self._advance(part * self._weight)
 
     def dump(self, name):
         """Path of the dump of a run."""
@@ -96,10 +75,12 @@ class Lab:
         ``may_fail(error)``: whether an error of LAMMPS is a result.  Any other error ends all runs and is raised as
         LammpsError.
         """
-        stop, total = threading.Event(), sum(job.steps for job in jobs.values())
+        stop = threading.Event()
         order = sorted(jobs, key=lambda name: -jobs[name].steps)
-        with ThreadPoolExecutor(max_workers=self.jobs) as pool:
-            futures = {name: pool.submit(self._run, name, jobs[name], may_fail, stop, total) for name in order}
+        with ThreadPoolExecutor(max_workers=self.jobs) as pool, tqdm(total=len(jobs), unit="run", disable=None) as bar:
+            futures = {name: pool.submit(self._run, name, jobs[name], may_fail, stop) for name in order}
+            for future in futures.values():
+                future.add_done_callback(lambda _: bar.update())
             try:
                 errors = [future.exception() for future in futures.values()]
             except BaseException:  # Ctrl-C
@@ -116,10 +97,9 @@ class Lab:
         Every round begins with a different job.  Returns name -> list of Finished, one per round.
         """
         finished_runs, names = {name: [] for name in jobs}, deque(jobs)
-        total = rounds * sum(job.steps for job in jobs.values())
-        for number in range(1, rounds + 1):
+        for number in tqdm(range(1, rounds + 1), unit="round", disable=None):
             for name in names:
-                finished = self._run(f"{name}.{number}", jobs[name], lambda error: False, threading.Event(), total)
+                finished = self._run(f"{name}.{number}", jobs[name], lambda error: False, threading.Event())
                 finished_runs[name].append(finished)
             names.rotate(-1)
         return finished_runs
@@ -141,22 +121,15 @@ class Lab:
         finished_runs = self.many(jobs)
         return {keys[of_run]: read(finished) for of_run, finished in finished_runs.items()}
 
-    def _run(self, name, job, may_fail, stop, total):
+    def _run(self, name, job, may_fail, stop):
         if stop.is_set():
             raise Interrupted(name)
         log, dump = self.out / "logs" / f"log.{name}", self.dump(name)
         dump.parent.mkdir(parents=True, exist_ok=True)
         variables = job.variables | {"out": dump.with_suffix("").resolve()}
-        done, error = 0, ""
-
-        def on_step(step):
-            nonlocal done
-            if done < step <= job.steps:
-                self.advance((step - done) / total)
-                done = step
-
+        error = ""
         try:
-            run(job.deck, log, variables, self.lmp, job.ranks, on_step, stop)
+            run(job.deck, log, variables, self.lmp, job.ranks, stop)
         except Interrupted:
             raise
         except LammpsError as failure:
@@ -164,5 +137,4 @@ class Lab:
             if not may_fail(error):
                 stop.set()
                 raise
-        self.advance((job.steps - done) / total)
         return Finished(Log(log), dump, error)

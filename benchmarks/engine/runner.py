@@ -1,7 +1,6 @@
 """Run LAMMPS as a program.  This module is independent of the contents of decks."""
 
 import os
-import re
 import shutil
 import sys
 from collections import deque
@@ -24,21 +23,14 @@ def find_lmp(lmp=None):
     return str(program)
 
 
-def _step_of(line):
-    """Time step of a line of thermo output, None for any other line."""
-    match = re.match(r"\s*(\d+)(?:\s+[-+.\dinfa]\S*){2,}\s*$", line)
-    return int(match[1]) if match else None
-
-
-def run(deck, log, variables, lmp, ranks=1, on_step=None, stop=None, before=()):
+def run(deck, log, variables, lmp, ranks=1, stop=None):
     """Run ``deck`` in its folder and leave ``log``; raise LammpsError if the run fails.
 
-    ``variables`` are given as ``-var name value``; ``on_step(step)`` is called for each line of thermo
-    output; ``stop`` is an Event that ends the run, which raises Interrupted; ``before`` are words of the
-    command line before ``lmp``.  Afterwards the log is complete and no process of the run is left.
+    ``variables`` are given as ``-var name value``; ``stop`` is an Event that ends the run, which raises Interrupted.
+    Afterwards the log is complete and no process of the run is left.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
-    command = list(before)
+    command = []
     if ranks > 1:
         mpiexec = find("mpiexec", beside=shutil.which(lmp))
         if not mpiexec:
@@ -49,9 +41,6 @@ def run(deck, log, variables, lmp, ranks=1, on_step=None, stop=None, before=()):
     with started(command, deck.parent, {**os.environ, "OMP_NUM_THREADS": "1"}, PIPE) as process:
         for line in process.stdout:
             tail.append(line)
-            step = _step_of(line)
-            if on_step and step is not None:
-                on_step(step)
             if stop is not None and stop.is_set():
                 raise Interrupted(log.name)
         process.wait()

@@ -149,10 +149,8 @@ def measure(lab):
             runs = [(method, steps) for method in METHODS for steps in numbers_of_steps(method, lab.quick)]
             points = {run: _errors(session, scene, reference, *run) for run in runs}
             ended = [run for run, (outcome, _) in points.items() if outcome is not None]
-            total = sum(seconds(steps) for _, steps in ended) * rounds * len(SCENES)
 
-            def once(run, scene=scene, points=points, total=total):
-                lab.advance(seconds(run[1]) / total)
+            def once(run, scene=scene, points=points):
                 return _timed(session, scene, *run, points[run][0])
 
             times = time_in_turn(ended, rounds, once, rounds if lab.quick else MOST_ROUNDS)

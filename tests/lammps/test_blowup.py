@@ -125,13 +125,13 @@ def test_too_large_a_step(lmp_tree, values, dt, ranks):
     assert whole and all(np.isfinite(frame).all() for frame in whole.values())
 
 
-@pytest.mark.parametrize("choices", ["accurate", "paper"])
-def test_coarse_runs_of_today_are_left_alone(lmp_tree, examples, formulation, choices):
+@pytest.mark.parametrize("keywords", ["", "preset paper"])
+def test_coarse_runs_of_today_are_left_alone(lmp_tree, examples, formulation, keywords):
     """In these runs the energy is not conserved, but bodies are stable: in some runs |q|^2 is wrong by a factor of
     two."""
     if formulation == "momentum":
-        choices = "accurate"  # the only ones
+        keywords = ""  # the only ones
     scene = whole_deck(examples / "case1" / "in.case1")
-    for dt in (0.25, 1.0) if choices == "accurate" or formulation == "second" else (0.25,):
-        settings = dict(formulation=formulation, choices=choices, dt=dt, out="none")
+    for dt in (0.25, 1.0) if not keywords or formulation == "second" else (0.25,):
+        settings = dict(formulation=formulation, keywords=keywords, dt=dt, out="none")
         lmp_tree.succeed(scene, settings | dict(steps=2000, every=1000))

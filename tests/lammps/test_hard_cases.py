@@ -38,11 +38,11 @@ def test_the_papers_small_step_leaves_rounding_only(lmp_wheel, formulation):
         return tables(lmp_wheel.succeed(deck, settings | more))[0]
 
     small = dict(dt=1e-4, steps=500_000, every=5_000)
-    compensated, plain = (run(compensate=word, **small) for word in ("yes", "no"))
+    compensated, plain = (run(keywords=f"compensate {word}", **small) for word in ("yes", "no"))
     assert off(compensated) < 1e-12 < off(plain) < 2e-10
     assert max(compensated["v_qerror"].max(), plain["v_qerror"].max()) < 2e-12
     if formulation != "momentum":  # which has no such keyword
-        free = run(dt=1e-3, steps=20_000, every=200, project="no", start="zero")
+        free = run(dt=1e-3, steps=20_000, every=200, keywords="project no start zero")
         assert free["v_qerror"].max() > 2e-12
 
 
@@ -97,7 +97,7 @@ def test_a_top_turns_over_as_jacobis_functions_say(lmp_wheel, formulation, value
     """Near its intermediate axis for 400 000 steps; the last digits of its energy decide when it turns over."""
 
     def missed(compensate):
-        settings = dict(formulation=formulation, values=values, compensate=compensate, dt=0.01, steps=400_000)
+        settings = dict(formulation=formulation, keywords=f"values {values} compensate {compensate}", dt=0.01, steps=400_000)
         settings |= dict(every=80_000, dump=80_000, out=lmp_wheel.folder / "top")
         lmp_wheel.succeed(EXAMPLES / "top" / "in.top", settings)
         sites = read_sites(lmp_wheel.folder / "top.dump")

@@ -159,7 +159,7 @@ def test_a_step_shorter_than_half_begins_anew(case1):
     for commands, more in (
         ("timestep 0.01", {}),
         ("timestep 0.008\ntimestep 0.02", {}),
-        ("timestep 0.008", {"start": "zero"}),
+        ("timestep 0.008", {"keywords": "start zero"}),
         ("fix noise body langevin 1.0 1.0 1.0 4711\ntimestep 0.008", {}),
     ):
         assert said not in case1.run(f"run 100\n{commands}\nrun 100", **more).stdout, commands

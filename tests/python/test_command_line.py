@@ -7,7 +7,6 @@ from importlib import metadata
 
 import numpy as np
 import pytest
-import yaml
 from click.testing import CliRunner
 
 from lammps_gearquat.cli import main
@@ -86,55 +85,6 @@ def test_gearquat_analyze_runs_apart_from_the_rest(tmp_path):
     assert (tmp_path / "gearquat-analyze" / "poses.npy").is_file()
     assert status("made.dump", "--frames", "99:") == 1
     assert status("made.dump", "--unknown") == 2
-
-
-def test_the_entry_for_the_registry_of_mdakits():
-    """The file has the keys that the registry requires, and agrees with the package."""
-    entry = yaml.safe_load((ROOT / "src" / "analysis" / "metadata.yaml").read_text())
-    required = "project_name authors maintainers description keywords license project_home documentation_home documentation_type"
-    assert all(entry[key] for key in required.split())
-    package = metadata.metadata("gearquat-analysis")
-    assert entry["project_name"] == package["Name"] and entry["license"] == package["License-Expression"]
-    assert entry["python_requires"] == package["Requires-Python"]
-    assert f"mdanalysis{entry['mdanalysis_requires']}" in package.get_all("Requires-Dist")
-
-
-#: Replacements of git, whose clone has the release TAG or no tag, and of pip, which records what it has installed.
-GIT_AND_PIP = """
-git() {
-  case "$1" in
-    clone) mkdir -p "$3/src/analysis" ;;
-    describe) [ -n "$TAG" ] && echo "$TAG" ;;
-    checkout) echo "git checkout $2" >&3 ;;
-    *) return 1 ;;
-  esac
-}
-pip() {
-  case "$1" in
-    install) shift; echo "pip install $*" >&3; touch "$TOP/installed" ;;
-    show) test -e "$TOP/installed" ;;
-  esac
-}
-"""
-
-
-@pytest.mark.parametrize(
-    "first, tag, done",
-    [
-        ("src_install", "", ["pip install ./src/analysis", "pip install .[test]"]),
-        ("src_install", "v1.2.3", ["pip install ./src/analysis", "pip install .[test]"]),
-        ("", "", ["git checkout main", "pip install ./src/analysis", "pip install .[test]"]),
-        ("pip install gearquat-analysis", "v1.2.3", ["pip install gearquat-analysis", "git checkout v1.2.3", "pip install .[test]"]),
-    ],
-)
-def test_the_registry_of_mdakits_can_test_the_source_and_the_release(tmp_path, first, tag, done):
-    """It joins the commands of an entry by semicolons, makes all letters small, and starts each entry in the same folder."""
-    entry = yaml.safe_load((ROOT / "src" / "analysis" / "metadata.yaml").read_text())
-    steps = [";".join(entry.get(first, [first])), ";".join(entry["test_dependencies"])]
-    for step in steps:
-        code = f"TOP=$PWD TAG={tag}\nexec 3>>log\n{GIT_AND_PIP}\n{step.lower()}"
-        subprocess.run(["bash", "-c", code], cwd=tmp_path, check=True)
-    assert (tmp_path / "log").read_text().splitlines() == done
 
 
 @pytest.mark.parametrize("distribution", PACKAGES)

