@@ -88,6 +88,6 @@ def test_the_library_cannot_be_opened_past_the_loader(lmp_wheel):
 
 
 def test_a_refused_plugin_leaves_a_built_in_fix_alone(lmp_tree):
-    environment = {"LAMMPS_PLUGIN_PATH": str(build_plugin("bigbig"))}
-    result = lmp_tree.succeed(DECK.format(load=""), environment=environment)
+    environment = {**lmp_tree.environment, "LAMMPS_PLUGIN_PATH": str(build_plugin("bigbig"))}
+    result = dataclasses.replace(lmp_tree, environment=environment, library=None).succeed(DECK.format(load=""))
     assert "the plugin was built for LAMMPS 22 Jul 2025" in result.stderr

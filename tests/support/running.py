@@ -164,32 +164,30 @@ class Lammps:
         variables: Mapping[str, object] | None = None,
         ranks: int = 1,
         timeout: float = 120.0,
-        folder: Path | None = None,
-        environment: Mapping[str, str] | None = None,
         meanwhile: Callable[[int], None] | None = None,
     ) -> Result:
         """Runs a deck: a Path to a file, or its text.
 
         A file runs in its own folder (from which it reads its data), a text in ``self.folder``,
-        the test's own; ``folder`` overrides either. A value of ``variables`` that is a list becomes
-        several words. With ``environment`` or ``meanwhile``, which is called once with the session ID of all
+        the test's own. A value of ``variables`` that is a list becomes
+        several words. With ``meanwhile``, which is called once with the session ID of all
         processes, the run has processes of its own; others have those of earlier runs, if this LAMMPS has a library.
         Raises TimeoutError, with the output so far.
         """
         number = len(list(self.folder.glob("log.run*"))) + 1
         log, out, err = (self.folder / f"{name}.run{number}" for name in ("log", "out", "err"))
         if isinstance(deck, Path):
-            path, where = deck.resolve(), folder or deck.resolve().parent
+            path, where = deck.resolve(), deck.resolve().parent
         else:
-            path, where = self.folder / f"in.run{number}", folder or self.folder
+            path, where = self.folder / f"in.run{number}", self.folder
             path.write_text(deck)
         for file in (log, out, err):
             file.touch()
         listed = {key: value if isinstance(value, (list, tuple)) else [value] for key, value in (variables or {}).items()}
         words = words_of((key, *values) for key, values in listed.items())
         try:
-            if self.library is None or SANITIZED or environment or meanwhile:
-                returncode = self._in_own_processes(path, words, ranks, timeout, where, log, out, err, environment, meanwhile)
+            if self.library is None or SANITIZED or meanwhile:
+                returncode = self._in_own_processes(path, words, ranks, timeout, where, log, out, err, meanwhile)
             else:
                 asked = dict(deck=str(path), words=words, folder=where, log=log, stdout=out, stderr=err)
                 returncode = answer(self.library, tuple(self.launcher), ranks, timeout, asked)
@@ -203,11 +201,11 @@ class Lammps:
         told = out.read_text(errors="replace").replace("\0", "")
         return Result(returncode, told, said, log.read_text(errors="replace"), self.folder)
 
-    def _in_own_processes(self, path, words, ranks, timeout, where, log, out, err, environment, meanwhile) -> int:
+    def _in_own_processes(self, path, words, ranks, timeout, where, log, out, err, meanwhile) -> int:
         command = [*self.launcher, str(ranks)] if ranks > 1 else []
         command += [str(self.executable), "-in", str(path), "-log", str(log), "-nocite", *words]
         waiting = waiting_environment() if ranks > 1 else {}
-        surroundings = {**own_environment(), **waiting, **self.environment, **(environment or {})}
+        surroundings = {**own_environment(), **waiting, **self.environment}
         # files instead of pipes, so that a child that outlives its parent does not delay us
         with out.open("w") as stdout, err.open("w") as stderr:
             with started(command, where, surroundings, stdout, stderr) as process:
