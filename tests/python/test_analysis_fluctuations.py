@@ -1,4 +1,4 @@
-"""Compressibility, dielectric constant, g(r), and the rotation about body axes, of motions whose answers are known."""
+"""Compressibility, dielectric constant, and the rotation about body axes, of motions whose answers are known."""
 
 from types import SimpleNamespace
 
@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 from gearquat_analysis import Poses, correlations, open_dump
 from gearquat_analysis.bodies import Bodies
 from gearquat_analysis.fluctuations import compressibility, dielectric_constant
-from gearquat_analysis.rdf import radial_distribution
 
 FRAMES = 4000
 
@@ -62,42 +61,6 @@ def test_dielectric_constant_of_independent_dipoles():
 @pytest.mark.parametrize("charges, why", [([0.5, -0.4], "bodies have charges"), ([0.0, 0.0], "no charges")])
 def test_ions_and_sites_without_charges_have_no_dielectric_constant(charges, why):
     assert why in dielectric_constant(dipoles(np.random.default_rng(1), charges), 300.0).why
-
-
-@pytest.fixture(scope="module")
-def gas(tmp_path_factory):
-    """A dump of dumbbells at new random places in each frame, in a box of length 20."""
-    rng, motion = np.random.default_rng(5), dumps.Motion([2] * 100, omega=0.0)
-
-    def change(_, rows):
-        rows = rows.copy()
-        rows[:, 4:7] += np.repeat(rng.uniform(-10.0, 10.0, (100, 3)) - motion.center, 2, axis=0)
-        return rows
-
-    path = tmp_path_factory.mktemp("gas") / "gas.dump"
-    return dumps.write(path, motion, np.zeros(60), change, box="-10 10")
-
-
-def test_an_ideal_gas_has_no_structure(gas):
-    """Sites of the same dumbbell are excluded; the errors agree with the scatter, and 5 % are detected."""
-    atoms = open_dump(gas).atoms
-    r, g, error = radial_distribution(atoms, "all", "all", bins=40)
-    assert r[-1] == pytest.approx(10.0, abs=0.2) and len(g) == 40
-    far = r > 2.0
-    # of 200 sites, 198 are in other bodies
-    z = (g[far] - 198.0 / 200.0) / error[far]
-    assert 0.7 < np.sqrt(np.mean(z**2)) < 1.4
-    assert np.abs((g[far] - 1.05) / error[far]).max() > 4.0
-    with pytest.raises(ValueError, match="'type 7' selects no atom"):
-        radial_distribution(atoms, "all", "type 7")
-
-
-def test_the_command_leaves_it(gas, tmp_path):
-    done = dumps.analyze(gas, tmp_path / "out", "--timestep", "1.0", "--rdf", "all", "all")
-    assert done.exit_code == 0, done.output
-    assert "g(r) of 'all' and 'all'" in done.output
-    table = dumps.columns(tmp_path / "out" / "rdf.csv")
-    assert table.dtype.names == ("r_1", "g_1", "error_1") and abs(table["g_1"][-20:].mean() - 0.99) < 0.02
 
 
 def test_rotation_about_each_axis():

@@ -59,18 +59,6 @@ def test_a_drift_is_judged_by_its_error(rate, error, drifts, holds):
 
 
 # --- in LAMMPS ----------------------------------------------------------------------------------------
-FRICTION = 0.05
-
-
-@pytest.mark.parametrize("style", ["rigid", "gear/quat"])
-def test_friction_is_measured_as_the_drift_that_it_is(make_deck, style):
-    """A friction of -gamma v on sites of mass 1 removes the energy 2 gamma K per unit of time, whatever else acts."""
-    path = make_deck(f"fix drag all viscous {FRICTION}", **FOR_GEAR)
-    with Deck(path, [("style", style)]) as deck:
-        found = drift.of_trial(deck.run(None, [2] * 50, 0.001, energies=True), 1.0)
-    assert found.rate == pytest.approx(-FRICTION, rel=2e-3)
-
-
 @pytest.mark.parametrize(
     ("keywords", "bound"),
     [("values 9", 1e-8), ("formulation first isokinetic total", 1e-8), ("temp 0.5 0.8 0.3", 1e-6)],
@@ -129,11 +117,3 @@ def test_a_larger_error_never_costs_more():
     assert [row.error for row in rows] == [2e-6, 2e-8, 3e-10]
     rows = costs_from([[7.0], [3.0], [4.0]]).rows
     assert [row.best.dt for row in rows] == [0.05, 0.05, 0.025]
-
-
-def test_the_same_holds_for_the_own_fix():
-    costs = costs_from([[7.0], [6.0], [4.0]])
-    for trial, _ in costs.trials:
-        trial.keywords = None
-    costs.rows = cost.rows_of(costs, [2e-6, 3e-10])
-    assert [row.own.seconds for row in costs.rows] == [4.0, 4.0]

@@ -44,10 +44,6 @@ def test_a_turn_about_its_own_line_is_none():
     assert measured == pytest.approx(np.array([[0.2, 0.2, 0.0, 0.0]] * 2), abs=1e-12)
 
 
-def test_power_of_ten_of_a_size():
-    assert [evaluate.decade(x) for x in (0.0, 0.5, 1.0, 10.5)] == [1.0, 0.1, 1.0, 10.0]
-
-
 def test_parting_is_where_it_first_happens():
     """Approaching again does not undo a divergence, and a NaN is a divergence."""
     time = np.arange(5.0)

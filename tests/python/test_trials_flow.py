@@ -9,7 +9,6 @@ from support.clumps import FIX, SITES
 
 from lammps_gearquat.commands.cost import cost
 from lammps_gearquat.trials import script
-from lammps_gearquat.trials.cost import Budget, measure
 from lammps_gearquat.trials.measure import Deck
 from lammps_gearquat.trials.script import DeckError
 from support.running import source_trees
@@ -272,13 +271,3 @@ def test_every_keyword_of_the_rigid_fixes_is_known(rigid_examples):
     text = "".join((folder / f"fix_rigid{name}.cpp").read_text() for name in ("", "_small"))
     known = set(re.findall(r'strcmp\(arg\[iarg\], *"(\w+)"\)', text))
     assert len(known) > 10 and known == set(script.RIGID_KEYWORDS)
-
-
-def test_cost_of_an_example_of_lammps(rigid_examples):
-    """Each recommended cost is below the cost of fix rigid, as far as the cut-off of the potential allows."""
-    with Deck(rigid_examples / "rigid" / "in.rigid") as deck:
-        costs = measure(deck, Budget(10.0), errors=[1e-3], time=0.05, timings=2)
-    own, best = costs.rows[0].own, costs.rows[0].best
-    assert own.evaluations > 5 * best.evaluations
-    (line,) = deck.fix_lines(best.method)
-    assert line.startswith("fix 1 all gear/quat group 9")

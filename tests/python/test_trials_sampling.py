@@ -246,10 +246,3 @@ def test_translation_and_rotation_are_those_of_the_bodies(make_deck, style):
     drifted = np.gradient(path.center, path.time, axis=0)[1].mean(axis=0)
     assert kinetic == pytest.approx(translation + rotation + 4.5 * drifted @ drifted, rel=1e-5)
     assert drifted[0] > 0.2 and trial.positions.shape[0] == 1
-
-
-def test_methods_of_a_deck():
-    free, held = (types.SimpleNamespace(takes=lambda _, whether=whether: whether) for whether in (True, False))
-    assert methods.methods(free)[0] == methods.DEFAULT == "" and "values 7" in methods.methods(free)
-    assert all(method.startswith("formulation first") for method in methods.methods(held))
-    assert methods.named("") == "gear/quat (default settings)" and methods.named(None) == "your fix"

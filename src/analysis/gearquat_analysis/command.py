@@ -12,7 +12,7 @@ from .units import UNITS
 
 #: files that the command writes in addition to poses.npy
 LEAVES = ("bodies.csv", "totals.csv", "totals.png", "poses.csv", "correlations.csv", "correlations.png")
-LEAVES += ("averages.csv", "averages.png", "spectra.csv", "rdf.csv")
+LEAVES += ("averages.csv", "averages.png", "spectra.csv")
 #: options that determine the results; a folder with results is identified by them
 DECIDE = ("data", "atom_style", "body", "select", "reference", "potential", "units", "timestep")
 
@@ -77,17 +77,6 @@ def _telling_warnings():
     cloup.option("--frames", callback=_frames, metavar="START:STOP:STEP", help="Frames to read."),
 )
 @cloup.option_group(
-    "Structure",
-    cloup.option(
-        "--rdf",
-        type=(str, str),
-        multiple=True,
-        metavar="SITES SITES",
-        help="Also compute the radial distribution function between two selections of sites, such as --rdf 'type 1' 'type 2';"
-        " may be given several times.",
-    ),
-)
-@cloup.option_group(
     "Output and processes",
     out_option("gearquat-analyze", "tables and pictures"),
     cloup.option("--csv", "as_csv", is_flag=True, help="Also write every pose as text, poses.csv."),
@@ -95,7 +84,7 @@ def _telling_warnings():
 )
 @failing_clearly(ValueError)
 @_telling_warnings()
-def analyze(dump, out, frames, rdf, as_csv, **options):
+def analyze(dump, out, frames, as_csv, **options):
     """Analyze rigid bodies in a LAMMPS dump.
 
     DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities.  The command writes poses.npy (poses and energies, by frame and body),
@@ -106,7 +95,7 @@ def analyze(dump, out, frames, rdf, as_csv, **options):
     from .folder import Folder
 
     asked = {name: options[name] for name in DECIDE}
-    asked |= {"frames": [frames.start, frames.stop, frames.step], "rdf": [list(pair) for pair in rdf]}
+    asked["frames"] = [frames.start, frames.stop, frames.step]
     folder = Folder(out, dump, asked, LEAVES)
     poses = _run(dump, out, frames, options)
     folder.fill(cloup.echo)
@@ -116,8 +105,6 @@ def analyze(dump, out, frames, rdf, as_csv, **options):
     if as_csv:
         poses.to_csv(out / "poses.csv", _bar("writing poses.csv", "frame"))
     _correlate(out, poses)
-    if rdf:
-        _distribute(out, poses, rdf, frames)
     cloup.echo(report.summary(poses, totals))
     cloup.echo(f"Tables and pictures are in {out.resolve()}")
 
@@ -212,17 +199,3 @@ def _correlate(out, poses):
         pictures.draw_correlations(found, known, out / "correlations.png")
     pictures.draw_averages(known, out / "averages.png")
     return cloup.echo(report.average_lines(known))
-
-
-def _distribute(out, poses, pairs, frames):
-    """Write rdf.csv: the distance, and g(r) with its standard error for each pair of selections."""
-    from .rdf import radial_distribution
-    from .tables import write_columns
-
-    columns = {}
-    for number, (first, second) in enumerate(_bar("counting pairs", "function")(pairs), 1):
-        r, g, error = radial_distribution(poses.atoms, first, second, frames)
-        columns |= {f"r_{number}": r, f"g_{number}": g, f"error_{number}": error}
-        top = int(g.argmax())
-        cloup.echo(f"g(r) of '{first}' and '{second}' has its largest value, {g[top]:.3g}, at {r[top]:.3g}.")
-    write_columns(out / "rdf.csv", columns)
