@@ -1,4 +1,4 @@
-"""Models of water, methods, steps and pressures of the runs."""
+"""Models of water, methods and steps of the runs."""
 
 from dataclasses import dataclass, replace
 
@@ -6,7 +6,8 @@ from benchmarks.studies.liquids import SPCE, WATER4
 
 #: 216 molecules each
 MODELS = {liquid.key: liquid for liquid in (replace(WATER4, edge=6), SPCE)}
-TEMPERATURE = 298.0
+#: K; atm, of the series at constant pressure
+TEMPERATURE, PRESSURE = 298.0, 1.0
 #: g/mL at this temperature and 1 atm, published: Abascal and Vega (2005); Berendsen et al. (1987), with Ewald sums
 PUBLISHED = {"tip4p": 0.9979, "spce": 0.998}
 
@@ -20,25 +21,22 @@ NPT, NVT = "npt", "nvt"
 
 @dataclass(frozen=True)
 class Series:
-    """Samples of one model with one method and time step in fs, in an ensemble; ``pressure`` in atm counts in NPT only."""
+    """Samples of one model with one method and time step in fs, in an ensemble."""
 
     model: str
     method: str
     dt: float
-    pressure: float = 1.0
     ensemble: str = NPT
-    temperature: float = TEMPERATURE
 
     @property
     def name(self):
         """Name in file names."""
-        where = f"{self.pressure:g}atm" if self.ensemble == NPT else self.ensemble
-        return f"{self.model}_{self.method}_{self.dt:g}fs_{where}_{self.temperature:g}K"
+        return f"{self.model}_{self.method}_{self.dt:g}fs_{self.ensemble}"
 
     @property
     def usual(self):
-        """True at constant pressure, 1 atm and TEMPERATURE."""
-        return self.ensemble == NPT and self.pressure == 1.0 and self.temperature == TEMPERATURE
+        """True at constant pressure."""
+        return self.ensemble == NPT
 
     @property
     def text(self):
@@ -46,17 +44,11 @@ class Series:
         return f"{METHODS[self.method]}, {self.dt:g} fs"
 
 
-#: pressures whose densities give the compressibility at 1 atm
-APART = 500.0
-COMPRESSED = tuple(Series("spce", OURS, 2.0, pressure) for pressure in (1.0 - APART, 1.0 + APART))
 #: series for comparison: the long step of ours; a short step, and the two steps of Richardson's extrapolation
 LONG = {model: Series(model, OURS, 2.0) for model in MODELS}
 SHORT, EXTRAPOLATED = Series("tip4p", SHAKE, 0.5), (Series("tip4p", SHAKE, 1.0), Series("tip4p", SHAKE, 2.0))
-#: constant volume: a long and a short step, whose pressures are compared, and the long step of fix rigid/nvt/small
-FIXED = tuple(Series("tip4p", OURS, dt, ensemble=NVT) for dt in (2.0, 0.5))
-RIVAL = Series("tip4p", RIGID, 2.0, ensemble=NVT)
-#: the same long and short step as above in cold water
-COLD = tuple(Series("tip4p", method, dt, temperature=250.0) for method, dt in ((OURS, 2.0), (SHAKE, 0.5)))
+#: constant volume: the long step of ours and of fix rigid/nvt/small
+FIXED, RIVAL = (Series("tip4p", method, 2.0, NVT) for method in (OURS, RIGID))
 #: Series -> nanoseconds that it should have; the series that lacks the largest part comes next
 TARGETS = {
     LONG["tip4p"]: 6.0,
@@ -65,14 +57,9 @@ TARGETS = {
     EXTRAPOLATED[1]: 4.0,
     EXTRAPOLATED[0]: 1.5,
     SHORT: 1.5,
-    FIXED[0]: 2.0,
-    FIXED[1]: 0.5,
+    FIXED: 2.0,
     RIVAL: 3.0,
     LONG["spce"]: 1.0,
-    COMPRESSED[0]: 0.5,
-    COMPRESSED[1]: 0.5,
-    COLD[0]: 0.5,
-    COLD[1]: 0.5,
 }
 #: number of runs between two looks at the clock
 BATCH = 4
@@ -80,7 +67,7 @@ BATCH = 4
 
 @dataclass(frozen=True)
 class Plan:
-    """Durations in ps of a run: ``settle`` before samples (three times as long in cold water), ``duration`` of ``blocks``
+    """Durations in ps of a run: ``settle`` before samples, ``duration`` of ``blocks``
     samples, ``every`` between rows, ``frame`` between frames of the dump.
 
     ``hours``: no further batch of runs begins after this time.
@@ -97,10 +84,6 @@ class Plan:
     blocks: int = 10
     timed: tuple = (1000, 5)
     shrinking: int = 4000
-
-    def lengths(self, series):
-        """Variable of the deck -> picoseconds."""
-        return {"settle": self.settle * (1 if series.temperature == TEMPERATURE else 3), "steps": self.duration}
 
 
 QUICK = Plan(0.0, 0.024, 0.24, 0.024, 0.048, 200, 5, timed=(20, 2), shrinking=1000)

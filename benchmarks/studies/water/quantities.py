@@ -10,7 +10,6 @@ from scipy.constants import Avogadro, calorie
 from gearquat_analysis.tables import with_error
 from gearquat_analysis.units import UNITS
 
-from .frames import AXES
 from .plan import MODELS, TEMPERATURE
 
 REAL = UNITS["real"]
@@ -45,31 +44,9 @@ def compressibility(samples):
     return (average(samples, "volume2") - volume**2) / (volume * KT) * PER_GPA
 
 
-def expansion(samples):
-    """Thermal expansion from the covariance of volume and configurational enthalpy, 1e-4/K."""
-    volume, enthalpy = average(samples, "volume"), average(samples, "enthalpy")
-    return 1e4 * (average(samples, "mixed") - volume * enthalpy) / (volume * KT * TEMPERATURE)
-
-
-def heat_capacity(samples):
-    """At constant pressure, of classical molecules, cal/mol/K: the kinetic part is exact, 3 k."""
-    variance = average(samples, "enthalpy2") - average(samples, "enthalpy") ** 2
-    return 1e3 * (3 * REAL.boltzmann + variance / (KT * TEMPERATURE * MODELS[samples[0].model].molecules))
-
-
-def dielectric_constant(samples):
-    """Static, from the fluctuation of the dipole moment with conducting boundaries."""
-    return 1.0 + 4 * math.pi * REAL.coulomb * average(samples, "moment2") / (3 * average(samples, "volume") * KT)
-
-
 def mean_of(name, factor=1.0):
     """A function of samples: the mean of one value."""
     return lambda samples: factor * average(samples, name)
-
-
-def colder(name):
-    """A function of samples: temperature of translation minus temperature of the rotation about an axis."""
-    return lambda samples: average(samples, "translation") - average(samples, name)
 
 
 @dataclass(frozen=True)
@@ -118,31 +95,16 @@ def cell(found, sign=""):
 DENSITY = Quantity("density", "g/mL", mean_of("density"))
 ENERGY = Quantity("potential energy", "kcal/mol", energy)
 WARMER = Quantity("T translation − T rotation", "K", warmer, "+")
-BY_AXIS = [
-    Quantity(f"T translation − T rotation about {axis}", "K", colder(name), "+")
-    for axis, name in zip(AXES, ("normal", "dipole", "hydrogens"))
-]
 COMPRESSIBILITY = Quantity("compressibility", "1/GPa", compressibility)
-EXPANSION = Quantity("expansion", "1e-4/K", expansion)
 #: of the conserved energy, of molecules with the total momentum of zero
 DRIFT = Quantity("drift", "kT/ns/dof", mean_of("drift", 1e3 / (KT * (6 * MODELS["tip4p"].molecules - 3))), "+")
 PRESSURE = Quantity("pressure", "atm", mean_of("measured"))
-AVERAGES = [DENSITY, ENERGY, WARMER, *BY_AXIS]
+AVERAGES = [DENSITY, ENERGY, WARMER]
 FLUCTUATIONS = [
     COMPRESSIBILITY,
-    EXPANSION,
-    Quantity("heat capacity", "cal/mol/K", heat_capacity),
-    Quantity("dielectric constant", "", dielectric_constant),
     Quantity("diffusion", "1e-9 m²/s", mean_of("diffusion", 10.0)),
     Quantity("rotation time", "ps", mean_of("turning")),
 ]
-
-
-def by_two_pressures(low, high):
-    """(value, error) of the compressibility from the densities at two pressures, 1/GPa."""
-    (small, e_small), (large, e_large) = DENSITY.of(low), DENSITY.of(high)
-    apart = (high[0].pressure - low[0].pressure) * 1.01325e-4
-    return math.log(large / small) / apart, math.hypot(e_small / small, e_large / large) / apart
 
 
 def extrapolated(fine, coarse, quantity):
@@ -155,7 +117,3 @@ def difference(one, other):
     """(value, error) of the difference of two (value, error)."""
     return one[0] - other[0], math.hypot(one[1], other[1])
 
-
-def duration(samples, quantity, error):
-    """Nanoseconds after which the standard error of a quantity is ``error``: it falls with their square root."""
-    return sum(sample.ps for sample in samples) / 1000 * (quantity.of(samples)[1] / error) ** 2

@@ -18,13 +18,11 @@ from benchmarks.studies.liquids import Plan as Starts
 from benchmarks.studies.liquids import equilibrate, template
 
 from .frames import read_motion
-from .plan import BATCH, EXTRAPOLATED, LONG, MODELS, QUICK, RIVAL, TARGETS, TEMPERATURE, Plan, Series
+from .plan import BATCH, EXTRAPOLATED, LONG, MODELS, PRESSURE, QUICK, RIVAL, TARGETS, TEMPERATURE, Plan, Series
 
 FOLDER = Path(__file__).parent
 SAMPLES = FOLDER / "samples.csv"
 BOLTZMANN = 0.0019872067  # kcal/mol/K
-#: 1 atm A^3 in kcal/mol
-PRESSURE_VOLUME = 1.0 / 68568.415
 #: steps of the scene that distinguishes trajectories
 TOLD_AFTER = 20
 
@@ -34,18 +32,15 @@ class Sample:
     """Means over a part of a run.
 
     ``start``: number of its start; ``block``: number of the part, from 0.  ``trajectory``: see the docstring of this
-    module.  ``ps``: duration.  ``rows``: number of averaged rows.  ``density`` in g/mL; ``volume`` in A^3; ``energy``:
-    potential energy in kcal/mol per molecule; ``enthalpy``: potential energy + pressure x volume in kcal/mol, with the
-    pressure of the series; ``volume2``, ``enthalpy2`` and ``mixed``: squares of both and their product; ``measured``: pressure in
-    atm; temperatures in kelvin; ``drift`` of the conserved energy in kcal/mol/ps.  The others as in Motion.
+    module.  ``ps``: duration.  ``rows``: number of averaged rows.  ``density`` in g/mL; ``energy``: potential energy in
+    kcal/mol per molecule; ``volume`` in A^3 and ``volume2``, its square; ``measured``: pressure in atm; temperatures in
+    kelvin; ``drift`` of the conserved energy in kcal/mol/ps.  The others as in Motion.
     """
 
     model: str
     method: str
     dt: float
-    pressure: float
     ensemble: str
-    temperature: float
     start: int
     block: int
     commit: str
@@ -56,17 +51,10 @@ class Sample:
     energy: float
     volume: float
     volume2: float
-    enthalpy: float
-    enthalpy2: float
-    mixed: float
     measured: float
     translation: float
     rotation: float
     drift: float
-    normal: float
-    dipole: float
-    hydrogens: float
-    moment2: float
     diffusion: float
     turning: float
 
@@ -105,7 +93,8 @@ def write_samples(samples, path):
 def job(series, data, number, plan):
     """Job of one run."""
     every = round(1000 * plan.every / series.dt)
-    steps = {name: every * math.ceil(1000 * length / (every * series.dt)) for name, length in plan.lengths(series).items()}
+    lengths = {"settle": plan.settle, "steps": plan.duration}
+    steps = {name: every * math.ceil(1000 * length / (every * series.dt)) for name, length in lengths.items()}
     variables = {"every": every, "frame": round(1000 * plan.frame / series.dt), "seed": number, **steps}
     return Job(FOLDER / "in.water", _of_series(series, data) | variables, sum(steps.values()))
 
@@ -114,13 +103,14 @@ def _of_series(series, data):
     """Variables of in.water."""
     liquid = MODELS[series.model]
     variables = {"liquid": liquid.key, "data": data, "pair": liquid.pair, "kspace": liquid.kspace, "dt": series.dt}
-    return variables | {name: getattr(series, name) for name in ("temperature", "pressure", "method", "ensemble")}
+    variables |= {"temperature": TEMPERATURE, "pressure": PRESSURE}
+    return variables | {"method": series.method, "ensemble": series.ensemble}
 
 
 def read(finished, series, number, origin, blocks):
     """List of the Samples of a finished run; ``origin``: commit, and the identifier of its trajectory."""
     thermo = {name: np.array(column)[1:] for name, column in finished.thermo.items()}
-    length, motions = len(thermo["Time"]) // blocks, read_motion(finished.dump, series.model, blocks)
+    length, motions = len(thermo["Time"]) // blocks, read_motion(finished.dump, blocks)
     parts = [{name: column[k * length :][:length] for name, column in thermo.items()} for k in range(blocks)]
     return [_sample(part, series, (number, k, *origin), motion) for k, (part, motion) in enumerate(zip(parts, motions))]
 
@@ -129,9 +119,8 @@ def _sample(thermo, series, origin, motion):
     molecules, turn, time = MODELS[series.model].molecules, thermo["c_rotation"], thermo["Time"] / 1000
     moving = 2 * thermo["KinEng"] / BOLTZMANN - 3 * molecules * turn
     volume, ps = thermo["Volume"], len(time) * float(time[1] - time[0])
-    enthalpy = thermo["PotEng"] + PRESSURE_VOLUME * series.pressure * volume
-    means = [thermo["Density"], thermo["PotEng"] / molecules, volume, volume**2, enthalpy, enthalpy**2, volume * enthalpy]
-    means += [thermo["Press"], moving / (3 * molecules - 3), turn]
+    means = [thermo["Density"], thermo["PotEng"] / molecules, volume, volume**2, thermo["Press"]]
+    means += [moving / (3 * molecules - 3), turn]
     numbers = [float(np.mean(values)) for values in means] + [float(np.polyfit(time, thermo["v_conserved"], 1)[0])]
     return Sample(*astuple(series), *origin, ps, len(turn), *numbers, *astuple(motion))
 
