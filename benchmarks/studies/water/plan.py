@@ -62,7 +62,7 @@ TARGETS = {
     LONG["spce"]: 1.0,
 }
 #: number of runs between two looks at the clock
-BATCH = 4
+BATCH = 2
 
 
 @dataclass(frozen=True)
