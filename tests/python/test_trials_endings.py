@@ -1,8 +1,7 @@
-"""Early ends of trials: bodies that leave the box, Ctrl-C, signals; and their lines in a batch log."""
+"""Early ends of trials: bodies that leave the box, Ctrl-C, signals; and the folder of results."""
 
 import json
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -14,7 +13,6 @@ import pytest
 from click.testing import CliRunner
 from support.clumps import FOR_GEAR
 
-from lammps_gearquat.commands import common
 from lammps_gearquat.commands.cost import cost as cost_command
 from support.running import processes_that_mention
 
@@ -132,27 +130,3 @@ def test_results_of_another_deck_and_of_other_options_are_kept(make_deck, tmp_pa
     path.write_text(path.read_text() + "# changed\n")
     before = {file: file.read_bytes() for file in out.iterdir()}
     assert "settings (the deck was rewritten): another" in refused(path, *words)
-
-
-# --- progress -----------------------------------------------------------------------------------------
-def test_a_batch_log_has_lines_of_progress(make_deck, tmp_path, monkeypatch):
-    monkeypatch.setattr(common, "EVERY", 0.0)
-    words = ["--until", 1, "--time", 2.0, "--out", tmp_path / "out"]
-    found = runs(cost_command, make_deck(), *words)
-    lines = found.stderr.splitlines()
-    assert any(re.search(r", step \S+: \d+ % after \d+:\d+$", line) for line in lines), found.stderr
-    assert "\r" not in found.stderr
-    monkeypatch.setattr(common, "EVERY", 1e9)
-    assert "step" not in runs(cost_command, make_deck(), *words).stderr
-
-
-def test_lines_of_progress_are_apart(monkeypatch):
-    now, told = [0.0], []
-    monkeypatch.setattr(common, "monotonic", lambda: now[0])
-    stream = type("Stream", (), {"write": staticmethod(told.append), "flush": staticmethod(lambda: None)})
-    log = common._Log(stream)
-    for second in range(1, 601):
-        now[0] = float(second)
-        log.write(f"\r{second} of 600   ")
-        log.write("\n")
-    assert told == [f"{60 * k} of 600\n" for k in range(1, 11)]

@@ -2,11 +2,11 @@
 
 import warnings
 from contextlib import contextmanager
-from pathlib import Path
 
 import cloup
+from tqdm import tqdm
 
-from .options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option, progress_bar
+from .options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option
 from .units import UNITS
 
 
@@ -110,7 +110,7 @@ def analyze(dump, out, frames, as_csv, **options):
 
 
 def _bar(what, unit):
-    return lambda iterable, total=None: progress_bar(iterable, total=total, desc=what, unit=unit)
+    return lambda iterable, total=None: tqdm(iterable, total=total, desc=what, unit=unit, disable=None)
 
 
 def _settle(trajectory, timestep):

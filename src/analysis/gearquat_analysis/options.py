@@ -1,10 +1,9 @@
-"""Common parts of all commands: types of options, help pages, progress bars, clear errors."""
+"""Common parts of all commands: types of options, help pages, clear errors."""
 
 from contextlib import contextmanager
 from pathlib import Path
 
 import cloup
-from tqdm import tqdm
 
 HELP = {"help_option_names": ["-h", "--help"], "show_default": True}
 POSITIVE = cloup.FloatRange(min=0, min_open=True)
@@ -34,8 +33,3 @@ def failing_clearly(*errors):
         yield
     except errors as error:
         raise cloup.ClickException(str(error)) from error
-
-
-def progress_bar(iterable=None, **options):
-    """tqdm's progress bar, disabled if the output is not a terminal."""
-    return tqdm(iterable, disable=None, **options)

@@ -4,19 +4,14 @@ import functools
 import signal
 import sys
 from contextlib import contextmanager
-from time import monotonic
 
 import cloup
 
 from gearquat_analysis.folder import Folder
-from gearquat_analysis.options import COUNT, FILE, progress_bar
+from gearquat_analysis.options import COUNT, FILE
 
 from ..trials.script import DeckError
 
-#: seconds between two lines of progress where there is no terminal
-EVERY = 60.0
-#: a line of progress
-LINE = "{desc}{percentage:.0f} % after {elapsed}"
 #: exit status after Ctrl-C, as in a shell
 INTERRUPTED = 130
 
@@ -80,32 +75,6 @@ def results_folder(out, scene, options, names, **more):
 def announce(path, progress):
     """Function that prints the actions on a deck before its trials, above a progress bar."""
     return lambda text: progress.write(f"{path.name}: {text}", file=sys.stderr)
-
-
-class _Log:
-    """A file for a progress bar that passes one line to ``stream`` every EVERY seconds.
-
-    It has no method isatty, so that the bar is not left out.
-    """
-
-    def __init__(self, stream):
-        self._stream, self._told = stream, monotonic()
-
-    def write(self, text):
-        line = text.strip()
-        if line and monotonic() - self._told >= EVERY:
-            self._told = monotonic()
-            self._stream.write(f"{line}\n")
-
-    def flush(self):
-        self._stream.flush()
-
-
-def shown_progress(**options):
-    """tqdm's progress bar; without a terminal, as in a batch job, a line every EVERY seconds instead."""
-    if sys.stderr.isatty():
-        return progress_bar(**options)
-    return progress_bar(file=_Log(sys.stderr), **{**options, "bar_format": LINE})
 
 
 @contextmanager

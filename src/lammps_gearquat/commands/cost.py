@@ -5,6 +5,7 @@ from functools import partial
 from time import monotonic
 
 import cloup
+from tqdm import tqdm
 
 from gearquat_analysis.options import COUNT, POSITIVE, command, failing_clearly, out_option
 from gearquat_analysis.tables import write_rows
@@ -12,7 +13,7 @@ from gearquat_analysis.tables import write_rows
 from ..launch import LammpsError
 from ..trials import BOUND, NORMS
 from ..trials.script import DeckError, pairs
-from .common import announce, deck_options, ending_cleanly, results_folder, shown_progress
+from .common import announce, deck_options, ending_cleanly, results_folder
 
 LEAVES = ("cost.csv", "trials.csv", "cost.png", "until.csv")
 
@@ -110,7 +111,7 @@ def cost(scene, errors, time, norm, bound, budget, timings, tries, distances, ou
         pairs(text)
     asked = {"error": errors, "of": norm, "time": time, "drift": bound, "try": tries, "until": distances}
     folder = results_folder(out, scene, asked, LEAVES, budget=budget, timings=timings)
-    bar = shown_progress(total=round(budget), bar_format="{l_bar}{bar}| {elapsed}")
+    bar = tqdm(total=round(budget), bar_format="{l_bar}{bar}| {elapsed}", disable=None)
     with ending_cleanly(out), bar as progress:
         clock = trials.Budget(budget, progress, begin)
         clock.say("following the deck")

@@ -3,12 +3,13 @@
 import os
 
 import cloup
+from tqdm import tqdm
 
 from gearquat_analysis.options import COUNT, FILE, POSITIVE, command, failing_clearly, out_option
 
 from ..launch import LammpsError
 from ..trials.script import DeckError
-from .common import ending_cleanly, reading_options, results_folder, shown_progress
+from .common import ending_cleanly, reading_options, results_folder
 
 
 @command(
@@ -66,7 +67,7 @@ def scatter(deck, variables, without, which, temperature, energy, rotation, seed
     asked = {"temperature": temperature, "energy": energy, "rotation": rotation, "seed": seed, "steps": steps}
     folder = results_folder(out, scene, asked, run.LEAVES, error=error, count=count)
     cores = processes or len(os.sched_getaffinity(0))
-    with ending_cleanly(out), shown_progress(total=0, unit=" flights", desc="flights") as bar:
+    with ending_cleanly(out), tqdm(total=0, unit=" flights", desc="flights", disable=None) as bar:
         start = (seed, temperature, energy, rotation)
         found = run.scatter(scene, start, error, count, steps, cores, bar)
     cloup.echo(f"{run.conclude(folder, deck.name, *found)}\n\nResults are in {out.resolve()}")
