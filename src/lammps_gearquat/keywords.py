@@ -5,7 +5,7 @@ import re
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
 
@@ -24,8 +24,6 @@ class Keyword:
     """A row of the list.
 
     ``about`` is integration, step, bodies, physics or output. ``kind`` is word, integer, number, name or mask.
-    ``requires`` and ``excludes`` are triples of another keyword, the value that it must have, and the value of this
-    keyword that requires or excludes it; an empty value means any value, and alternatives have vertical bars between.
     """
 
     name: str
@@ -33,9 +31,6 @@ class Keyword:
     kind: str
     values: str
     default: str
-    requires: tuple
-    excludes: tuple
-    meaning: str
 
     @property
     def words(self):
@@ -64,12 +59,6 @@ class Keyword:
         return {name: (int(low), int(high)) for low, high, names in limits for name in names.split(", ")}
 
 
-def _condition(text):
-    name, *words = text.split()
-    own = "".join(word.strip("()") for word in words if word.startswith("("))
-    return name, "".join(word for word in words if not word.startswith("(")), own
-
-
 def parse(text):
     """Name -> Keyword from the output of the fix; raises RuntimeError if it contains no list."""
     lines = iter(text.splitlines())
@@ -81,11 +70,7 @@ def parse(text):
         cells = [cell.strip() for cell in re.split(" {2,}", line)]
         if len(cells) != len(titles.split()):
             break
-        name, about, kind, values, default, *conditions, meaning = (
-            "" if cell == "-" else cell for cell in cells
-        )
-        triples = [tuple(map(_condition, filter(None, cell.split(", ")))) for cell in conditions]
-        table[name] = Keyword(name, about, kind, values, default, *triples, meaning)
+        table[cells[0]] = Keyword(*("" if cell == "-" else cell for cell in cells[: len(fields(Keyword))]))
     return table
 
 
