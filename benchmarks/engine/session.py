@@ -35,12 +35,13 @@ class Outcome:
     """The outcome of a run, in the units of the run.
 
     ``seconds``: wall time of the ``run`` command; ``start``: force evaluations of the method's own start.
-    ``masses`` and ``molecules`` (n,), ``before`` and ``after`` (n, 3): unwrapped positions of all atoms,
+    ``ids``, ``masses`` and ``molecules`` (n,), ``before`` and ``after`` (n, 3): unwrapped positions of all atoms,
     sorted by ID, before and after the run; ``thermo``: column -> samples.
     """
 
     seconds: float
     start: int
+    ids: np.ndarray
     masses: np.ndarray
     molecules: np.ndarray
     before: np.ndarray
@@ -50,7 +51,7 @@ class Outcome:
 
 # --- in the process -------------------------------------------------------------------------------
 def _state(lmp):
-    """Masses, molecules and unwrapped positions in an orthogonal box, sorted by ID."""
+    """IDs, masses, molecules and unwrapped positions in an orthogonal box, sorted by ID."""
     atoms = lmp.numpy
     ids = atoms.extract_atom("id")[: lmp.extract_setting("nlocal")]
     order = np.argsort(ids)
@@ -58,7 +59,7 @@ def _state(lmp):
     low, high, *_ = lmp.extract_box()
     images = [lmp.decode_image_flags(int(flag)) for flag in atoms.extract_atom("image")[order]]
     positions = atoms.extract_atom("x")[order] + np.array(images) * np.subtract(high, low)
-    return masses[order], atoms.extract_atom("molecule")[order], positions
+    return ids[order], masses[order], atoms.extract_atom("molecule")[order], positions
 
 
 def perform(deck, variables, log, tell):

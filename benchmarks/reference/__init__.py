@@ -7,10 +7,12 @@ double.  Contents and use::
         Cage, FreeField, State, Problem, paper_problem, bodies_from_sites,
         reference_state, reference_states,
     )
+    from benchmarks.reference.lammps_forces import LammpsForces, deck_problem, DeckError
     from benchmarks.reference.solvers import solve, state_errors
     from benchmarks.reference import splittings
 
     problem = paper_problem(1, "consistent")         # the cage; or case 3, or "unrotated"
+    problem = deck_problem("in.water", {"dt": 0.5})  # any script; every molecule a rigid body
     top = problem.with_field(FreeField())            # the same bodies and start, no forces
 
     # State in long double: exact without forces, else by extrapolation
@@ -19,8 +21,8 @@ double.  Contents and use::
     end.double                                       # the same as float64
     a, b = reference_states(problem, [100.0, 200.0]) # several times, one integration
 
-    # sites (S, 3), unwrapped, to compare with a dump
-    problem.site_positions(end)
+    # sites (S, 3), unwrapped, to compare with a dump; their atom IDs in a deck_problem
+    problem.site_positions(end), problem.field.ids
 
     # center (B,), angle (B,), energy (one number)
     errors = state_errors(problem, end, other_state)
@@ -34,7 +36,7 @@ radians per unit of time.  Units follow the field.  The order and directions of 
 problem was made: compare q within one problem, sites between two.
 
 Files: quaternion.py; equations.py (bodies, state, rates, energies); fields.py (cage, none);
-paper.py (the paper's body and starts); integrators.py
+lammps_forces.py (LAMMPS' own forces); paper.py (the paper's body and starts); integrators.py
 (Gragg-Bulirsch-Stoer); free_top.py (exact); solvers.py (errors; solvers that
 control their steps); multistep.py (symmetric, order 8); splittings.py (exact free rotation between kicks);
 stability.py (stable steps of the methods of the fix for a linear equation); deflection.py (collisions

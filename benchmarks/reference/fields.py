@@ -1,4 +1,4 @@
-"""Fields that act on the sites: the cage of the paper, and no field.
+"""Fields that act on the sites: the cage of the paper, and no field.  Fields of LAMMPS are in lammps_forces.py.
 
 A field has
     energy_and_forces(positions)  potential energy and forces (S, 3) at site positions (S, 3)

@@ -3,7 +3,6 @@
 Every run can be repeated by ``lmp -in DECK -var ...``.
 """
 
-import re
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +13,8 @@ from benchmarks.engine.costs import cost_of, count_text, power, ratio_text, sign
 from benchmarks.engine.methods import AUTOMATIC, rigid
 from benchmarks.engine.session import MOST_ROUNDS, RunError, Session, Timing, time_in_turn
 from benchmarks.engine.sites import pose_errors
-from benchmarks.reference import FreeField, Problem, bodies_from_sites, paper_problem, reference_state
+from benchmarks.reference import FreeField, paper_problem, reference_state
+from benchmarks.reference.lammps_forces import deck_problem
 
 RIGID = rigid("rigid/nve/small", "rigid")
 METHODS = (AUTOMATIC, RIGID)
@@ -78,10 +78,11 @@ def numbers_of_steps(method, quick):
 
 @dataclass(frozen=True)
 class Reference:
-    """``problem`` and its ``state`` at the end; positions ``sites`` (S, 3) of its sites, the atoms with the first IDs."""
+    """``problem`` and its ``state`` at the end; ``ids`` (S,) of the sites and their positions ``sites`` (S, 3)."""
 
     problem: object
     state: object
+    ids: np.ndarray
     sites: np.ndarray
 
     @classmethod
@@ -89,12 +90,12 @@ class Reference:
         """The Reference of a Problem, with a ``tolerance`` of the integrator."""
         state = reference_state(problem, end, tolerance)
         sites = problem.site_positions(state).astype(np.float64)
-        return cls(problem, state, sites)
+        return cls(problem, state, getattr(problem.field, "ids", np.arange(1, len(sites) + 1)), sites)
 
     def positions(self, outcome):
         """Positions (n, 3) of all atoms of an Outcome; atoms outside of bodies do not move."""
         positions = outcome.before.copy()
-        positions[: len(self.sites)] = self.sites
+        positions[np.searchsorted(outcome.ids, self.ids)] = self.sites
         return positions
 
     def errors(self, outcome):
@@ -103,15 +104,12 @@ class Reference:
 
 
 def problem_of(scene):
-    """The Problem of a scene: the cage in extended precision, or a top without forces from its data file."""
+    """The Problem of a scene, without LAMMPS' forces: the cage in extended precision, or a top without forces."""
     if scene.key == "case1":
         return paper_problem(1, "consistent")
-    text = (scene.deck.parent / "data.top").read_text()
-    parts = re.split("Masses|Atoms # full|Velocities", text)[1:]
-    masses, atoms, velocities = (np.loadtxt(part.splitlines()) for part in parts)
-    of_sites = masses[atoms[:, 2].astype(int) - 1, 1]
-    bodies, start = bodies_from_sites(of_sites, atoms[:, 4:7], velocities[:, 1:], np.zeros(len(atoms), int))
-    return Problem(scene.key, bodies, FreeField(), start)
+    problem = deck_problem(scene.deck)
+    problem.field.close()
+    return problem.with_field(FreeField())
 
 
 # --- measuring ------------------------------------------------------------------------------------

@@ -5,22 +5,17 @@ import pytest
 
 from benchmarks.engine.lab import Lab
 from benchmarks.engine.session import Session
+from benchmarks.reference.lammps_forces import LammpsForces
 from benchmarks.studies.rivals import peers, scenes, strongest
-from lammps_gearquat.launch import open_library
 
 
 def test_forces_of_the_encounter_are_those_of_its_deck(tmp_path):
     scene, problem = next(both for both in scenes.scenes(tmp_path, quick=True) if both[0].key == "encounter")
     places = problem.site_positions(problem.start).astype(float)
-    right, exact = problem.field.energy_and_forces(places)
-    lammps = open_library([("steps", 0), ("method", "rigid")])
-    try:
-        lammps.file(str(scene.deck))
-        forces = lammps.numpy.extract_atom("f")[np.argsort(lammps.numpy.extract_atom("id")[:5])[:4]]
-        assert float(right) == pytest.approx(lammps.extract_compute("thermo_pe", 0, 0), rel=1e-13)
-        assert np.abs(exact - forces).max() < 1e-12
-    finally:
-        lammps.close()
+    with LammpsForces(scene.deck) as field:
+        field.choose(np.arange(1, 5))
+        (energy, forces), (right, exact) = (one.energy_and_forces(places) for one in (field, problem.field))
+    assert float(right) == pytest.approx(energy, rel=1e-13) and np.abs(exact - forces).max() < 1e-12
     assert places[2] == pytest.approx([scenes.PASSES, -1, 0], abs=1e-14)
 
 

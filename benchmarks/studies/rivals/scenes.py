@@ -1,7 +1,8 @@
 """Scenes in which the fix is compared with other methods, and their runs.
 
 The first is test case 1.  Two are in the middle of its cage, where forces are weak and the body turns slowly or fast.
-A charge passes a fixed one at a small distance, where only methods that control their steps are of use.  Ten random starts near test case 1 were not used to choose any
+Two molecules of water vibrate about a hydrogen bond, and a charge passes a fixed one at a small distance, where only
+methods that control their steps are of use.  Ten random starts near test case 1 were not used to choose any
 coefficient.
 """
 
@@ -12,8 +13,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from benchmarks.engine.decks import EXAMPLES, deck
-from benchmarks.reference import Cage, Problem, State, bodies_from_sites, paper_problem
+from benchmarks.reference import Cage, Problem, State, paper_problem
 from benchmarks.reference import quaternion as qt
+from benchmarks.reference.lammps_forces import deck_problem
 from benchmarks.reference.paper import SITE_MASSES, SITES
 from benchmarks.studies import accuracy
 from benchmarks.studies.accuracy import Reference, geometric
@@ -25,6 +27,8 @@ CASE1 = "Test case 1"
 SEED, STARTS, AWAY = 2026, 10, 4.0
 #: angular velocity in the weak field, along the principal axes, and the factor of the fast rotation
 OMEGA, FASTER = (0.2, 0.3, 0.12), 8
+#: half of the angle of a molecule, distance of the oxygen atoms in angstrom, unit of the rates below in fs
+HALF, APART, FS = 109.47 / 2, 2.9, 48.88821291
 #: distance at which the charge would pass the fixed one without forces
 PASSES = 0.02
 #: tolerance of the reference there; below it, rounding ends the extrapolation
@@ -37,20 +41,16 @@ QUICK_NAMES = ("DDEABM", "Quinlan–Tremaine 8", "SABA4, 4 stages")
 #: columns of the errors in the rows of peers.py
 COLUMNS = {"position": 2, "orientation": 3, "sites": 4}
 
-ENCOUNTER = """\
-# a charge passes a fixed one
-units lj
+HEAD = """\
+# {title}
+units {units}
 atom_style full
 atom_modify map array sort 0 0.0
 boundary f f f
 region box block -50 50 -50 50 -50 50
-create_box 4 box
+create_box {types} box
 {atoms}
-create_atoms 4 single 0 0 0
-set type 4 charge 1.0
-mass 4 1.0
-pair_style coul/cut 90.0
-pair_coeff * *
+{forces}
 neighbor 5.0 nsq
 neigh_modify once yes exclude molecule/intra all
 group body molecule > 0
@@ -60,6 +60,14 @@ variable every index 1
 variable out index out
 include {motion}
 """
+WATER = """\
+pair_style lj/cut/coul/cut 90.0
+pair_coeff * * 0.0 1.0
+pair_coeff 1 1 0.1553 3.166
+mass 1 15.9994
+mass 2 1.008
+set type 1 charge -0.8476
+set type 2 charge 0.4238"""
 
 
 class Center(Cage):
@@ -143,22 +151,47 @@ def _in_the_middle(omega):
     return Problem("middle of the cage", base.bodies, base.field, start)
 
 
+def _atoms(bodies, kinds, motions):
+    """Commands that create ``bodies``, arrays (n, 3) of sites, with pairs of velocity and angular velocity."""
+    lines, number = [], 0
+    for molecule, (sites, (velocity, omega)) in enumerate(zip(bodies, motions), 1):
+        middle = sites.mean(axis=0)
+        for kind, place in zip(kinds, sites):
+            number += 1
+            v = velocity + np.cross(omega, place - middle)
+            x, y, z = (f"{c:.15g}" for c in place)
+            lines.append(f"create_atoms {kind} single {x} {y} {z}")
+            lines.append(f"set atom {number} mol {molecule} vx {v[0]:.15g} vy {v[1]:.15g} vz {v[2]:.15g}")
+    return "\n".join(lines)
+
+
+def _deck(folder, name, units, types, forces, *bodies_kinds_motions):
+    """Path of a deck that it writes, with the methods and outputs of examples."""
+    path, motion = folder / f"in.{name}", EXAMPLES / "common" / "in.motion"
+    atoms = _atoms(*bodies_kinds_motions)
+    path.write_text(HEAD.format(title=name, units=units, types=types, atoms=atoms, forces=forces, motion=motion))
+    return str(path)
+
+
+def _pair(folder):
+    """Deck of two molecules of water, the first a donor."""
+    s, c = np.sin(np.radians(HALF)), np.cos(np.radians(HALF))
+    sites = np.array([(0, 0, 0), (s, c, 0), (-s, c, 0)])
+    turns = Rotation.from_euler("z", HALF - 90, degrees=True), Rotation.from_euler("zx", (-90, 60), degrees=True)
+    bodies = [turn.apply(sites) + (x * APART / 2, 0, 0) for turn, x in zip(turns, (-1, 1))]
+    rates = np.array([((0, 0.12, 0.1), (0.3, 0.2, -0.4)), ((0, -0.12, -0.1), (-0.3, 0.4, 0.2))]) / FS
+    return _deck(folder, "pair", "real", 2, WATER, bodies, (1, 2, 2), rates)
+
+
 def _encounter(folder):
-    """(Path of a deck that it writes, Problem): a body without rotation whose third charge passes a fixed one."""
+    """Deck of a body at rest in its frame whose third charge passes a fixed one."""
     sites = np.array(SITES, dtype=float)
-    places = Rotation.from_euler("zxz", (20, 90, 10), degrees=True).apply(sites - sites[2]) + (PASSES, -1, 0)
-    places = np.array([[float(f"{x:.15g}") for x in place] for place in places])
-    lines = []
-    for k, (place, kind) in enumerate(zip(places, (1, 1, 2, 3)), 1):
-        lines.append(f"create_atoms {kind} single {' '.join(f'{x:.15g}' for x in place)}")
-        lines.append(f"set atom {k} mol 1 vx 0 vy 0.4 vz 0")
-    for kind in (1, 2, 3):
-        lines += [f"mass {kind} {SITE_MASSES[kind]}", f"set type {kind} charge {Center.SITE_CHARGES[kind]}"]
-    path = folder / "in.encounter"
-    path.write_text(ENCOUNTER.format(atoms="\n".join(lines), motion=EXAMPLES / "common" / "in.motion"))
-    body = np.zeros(4, dtype=int)
-    shapes, start = bodies_from_sites(np.array(SITE_MASSES, float), places, np.tile([0.0, 0.4, 0.0], (4, 1)), body)
-    return str(path), Problem("encounter", shapes, Center(), start)
+    turned = Rotation.from_euler("zxz", (20, 90, 10), degrees=True).apply(sites - sites[2]) + (PASSES, -1, 0)
+    forces = ["pair_style coul/cut 90.0", "pair_coeff * *", "create_atoms 4 single 0 0 0", "set type 4 charge 1.0"]
+    forces += ["mass 4 1.0", *(f"mass {k} {m}" for k, m in zip((1, 2, 3), SITE_MASSES[1:]))]
+    forces += [f"set type {k} charge {q}" for k, q in zip((1, 2, 3), Center.SITE_CHARGES[1:])]
+    motion = [((0, 0.4, 0), (0, 0, 0))]
+    return _deck(folder, "encounter", "lj", 4, "\n".join(forces), [turned], (1, 1, 2, 3), motion)
 
 
 def scenes(folder, quick=False):
@@ -180,10 +213,13 @@ def scenes(folder, quick=False):
     ):
         problem = _in_the_middle(factor * np.array(OMEGA))
         yield scene(f"case1-{key}", title, end, 40, last, variables=write_data(folder / key, problem)), problem
-    path, problem = _encounter(folder)
-    title = "A charge that passes a fixed one at a small distance"
+    path = _pair(folder)
+    yield scene("pair", "Two molecules of water, 1 ps", 20 * FS, 150, 3000, path=path), deck_problem(path)
+    path, title = _encounter(folder), "A charge that passes a fixed one at a small distance"
+    problem = deck_problem(path)
+    problem.field.close()
     # with larger tolerances, solvers pass through the singularity
-    yield scene("encounter", title, 4.0, path=path, tolerances=tolerances[4:]), problem
+    yield scene("encounter", title, 4.0, path=path, tolerances=tolerances[4:]), problem.with_field(Center())
     for number, problem in enumerate(random_starts(), 1):
         variables = write_data(folder / f"start{number}", problem)
         yield scene(f"case1-start{number}", problem.name, 100.0, 30, 2400, "position", variables=variables), problem
@@ -203,4 +239,6 @@ def measure(lab, session):
         names = [name for name in names if name in QUICK_NAMES] if lab.quick else names
         own |= peers.measure(lab, scene, reference, names)
         found[scene.title] = COLUMNS[scene.measure], own
+        if "ids" in vars(problem.field):
+            problem.field.close()
     return found
