@@ -1,24 +1,14 @@
 """Fields that act on the sites: the cage of the paper, and no field.  Fields of LAMMPS are in lammps_forces.py.
 
 A field has
-    energy_and_forces(positions)  potential energy and forces (S, 3) at site positions (S, 3)
-    force_to_acceleration, kinetic_to_energy   factors of its units (LAMMPS' ftm2v and mvv2e)
-    dtype                         float type its forces are good to, None for any
+    energy_and_forces(positions)  potential energy and forces (S, 3) at site positions (S, 3), in units lj
     astype(dtype)                 itself, for states of another float type
 """
 
 import numpy as np
 
 
-class LennardJonesUnits:
-    """Units in which both factors are 1."""
-
-    force_to_acceleration = 1.0
-    kinetic_to_energy = 1.0
-    dtype = None
-
-
-class FreeField(LennardJonesUnits):
+class FreeField:
     """No forces."""
 
     def energy_and_forces(self, positions):
@@ -30,8 +20,7 @@ class FreeField(LennardJonesUnits):
         return self
 
 
-
-class Cage(LennardJonesUnits):
+class Cage:
     """The paper's 26 fixed spheres around one body of four sites; Eq. 19.
 
     The charges are reconstructed, the paper does not print them: of the thirteen pairs of mirror
