@@ -31,16 +31,13 @@ def chosen(names):
 
 def report(finding, check):
     """Print the finding; returns the number of measurements that are out of bounds, if they are checked."""
-    if finding.summary:
-        click.echo(finding.summary)
     failed = 0
     for measurement in finding.measurements:
         line = f"{measurement.what}: {measurement.text}"
         if check and not measurement.holds:
             failed += 1
             line = f"FAILED {line}; it must be {measurement.bounds}"
-        if check or not finding.summary:
-            click.echo(line)
+        click.echo(line)
     if check:
         bounded = sum(bool(measurement.bounds) for measurement in finding.measurements)
         click.echo(f"{bounded - failed} of {bounded} bounds hold.")

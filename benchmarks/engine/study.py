@@ -60,14 +60,13 @@ class Finding:
     ``measurements``: a sequence of Measurement.  ``tables``: name -> Table; each is also written as a CSV file.
     ``pictures``: name -> tuple of Panel (see panels.py), or a function that draws into the path it gets;
     names without a suffix become PNG files, and those that the page shows are published.
-    ``context``: further names of the templates.  ``summary``: printed in place of the measurements.
+    ``context``: further names of the templates.
     """
 
     measurements: tuple = ()
     tables: dict = field(default_factory=dict)
     pictures: dict = field(default_factory=dict)
     context: dict = field(default_factory=dict)
-    summary: str = ""
 
 
 @dataclass(frozen=True)

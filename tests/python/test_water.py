@@ -56,21 +56,6 @@ def test_density(water):
     assert MOLECULES * MASS.sum() / (0.602214076 * water.box**3) == pytest.approx(0.997, rel=1e-9)
 
 
-def peak(water, low, high):
-    """Distance where g(OO) of the configuration is largest, in shells of 0.1 Angstrom."""
-    edges = np.arange(low, high, 0.1)
-    oxygens = cKDTree(water.x[:, 0] % water.box, boxsize=water.box)
-    count = np.diff(oxygens.count_neighbors(oxygens, edges))
-    middle = (edges[1:] + edges[:-1]) / 2
-    return middle[np.argmax(count / middle**2)]
-
-
-def test_structure_is_that_of_water(water):
-    """First neighbors at 2.75 Angstrom, second neighbors at 4.5, as in a tetrahedron."""
-    assert abs(peak(water, 2.0, 6.0) - 2.75) <= 0.11
-    assert abs(peak(water, 3.4, 5.6) - 4.5) <= 0.35
-
-
 # --- energies -----------------------------------------------------------------------------------
 def pair_energy(r, charges, oxygens, forces):
     """Energy of pairs of sites at distances r (n,), as in forces.smooth and forces.plain."""
@@ -132,18 +117,6 @@ def test_force_vanishes_smoothly_at_the_cutoff(lmp_wheel, kind):
         _, force = table(lmp_wheel, forces, kind, CUTOFF - gaps)
         slope = np.log(force[-2] / force[-1]) / np.log(gaps[-2] / gaps[-1])
         assert slope == pytest.approx(order, abs=0.1)
-
-
-@pytest.mark.parametrize("forces", ["smooth", "plain"])
-@pytest.mark.parametrize("kind", PAIRS)
-def test_force_is_the_slope_of_the_energy(lmp_wheel, forces, kind):
-    step = 1e-3
-    distances = 2.5 + step * np.arange(5)
-    energy, force = table(lmp_wheel, forces, kind, distances)
-    slope = (energy[0] - 8 * energy[1] + 8 * energy[3] - energy[4]) / (12 * step)
-    assert force[2] == pytest.approx(-slope, rel=1e-7)
-    expected = pair_energy(distances, np.prod(PAIRS[kind]), kind == "1 1", forces)
-    assert energy == pytest.approx(expected, rel=1e-9)
 
 
 def order(lmp, forces, values):

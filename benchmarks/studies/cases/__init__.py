@@ -4,8 +4,6 @@ plan.py (runs), claims.py (the paper's claims and their verdicts), accuracy.py (
 figures and two others).
 """
 
-import textwrap
-
 from benchmarks.engine import Finding, Measurement, Study, Table
 
 from . import accuracy
@@ -83,17 +81,6 @@ def listed(numbers):
     return f"{', '.join(others)} and {last}" if others else last
 
 
-def summary(claims, width=100):
-    """The claims for a terminal, one short block for each."""
-    lines, indent = [], {"initial_indent": "    ", "subsequent_indent": "    "}
-    for judged in claims:
-        claim = judged.claim
-        lines += textwrap.wrap(f"{judged.verdict.upper()}: {claim.paper} ({claim.source})", width)
-        lines += textwrap.wrap(judged.measured, width, **indent)
-        lines += textwrap.wrap(judged.why, width, **indent)
-    return "\n".join(lines)
-
-
 def find(results):
     """Finding of plan.Results."""
     claims = all_claims(results)
@@ -119,7 +106,7 @@ def find(results):
         "ends": (ACCURACY_END, END),
     }
     found = measurements(position, energy, steps, count)
-    return Finding(found, tables, pictures(results), context, summary(claims))
+    return Finding(found, tables, pictures(results), context)
 
 
 TITLE = "The paper's claims and what was measured"
