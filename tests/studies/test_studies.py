@@ -20,17 +20,18 @@ def beyond(bound, sign):
 
 
 def written(study, folder, finding):
-    """Texts of the blocks that a study writes for a Finding."""
+    """Page -> text of the block that a study writes for a Finding."""
     write(study, folder, finding, Origin("It was measured in a test.", True))
-    return [(folder / name.removesuffix(".j2")).read_text() for name in study.blocks.values()]
+    return {page: (folder / name.removesuffix(".j2")).read_text() for page, name in study.blocks.items()}
 
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.key)
 def test_from_runs_to_a_page(study, tmp_path):
     write_data(tmp_path / "data.json", study.measure(Lab(tmp_path, quick=True)))
     finding = study.find(read_data(tmp_path / "data.json"))
-    for text in written(study, tmp_path, finding):
-        assert "It was measured in a test." in text and not any(mark in text for mark in ("{{", "{%", "Undefined"))
+    for page, text in written(study, tmp_path, finding).items():
+        assert ("It was measured in a test." in text) == (page != "README.md")
+        assert not any(mark in text for mark in ("{{", "{%", "Undefined"))
     for name, table in finding.tables.items():
         assert all(len(row) == len(table.header) for row in table.rows), name
     bounded = [one for one in finding.measurements if one.bounds]
