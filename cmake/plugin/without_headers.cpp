@@ -2,9 +2,9 @@
 // gear_quat_with_headers.cpp, which includes respa.h, molecule.h and atom_vec_*.h: see CMakeLists.txt.
 // LAMMPS' library contains the functions that these headers declare all the same.
 
+#include "gear_quat_assembly.h"
 #include "gear_quat_extended.h"
 #include "gear_quat_forces.h"
-#include "gear_quat_given_bodies.h"
 
 #include "comm.h"
 #include "error.h"

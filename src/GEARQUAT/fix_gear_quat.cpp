@@ -35,16 +35,13 @@ using namespace GearQuat;
 /* ---------------------------------------------------------------------- */
 
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), args(lmp, narg, arg), bodies(args.scheme),
-    ownership(lmp, this, bodies, args.scheme), sites(lmp, bodies, ownership),
-    other_fixes(lmp, this, bodies, ownership, sites, args),
-    step(lmp, this, args, fleet, bodies, ownership, sites, other_fixes,
-         [this](int vflag, double **f) {
-           tally_virial(vflag, f);
-         }),
-    driven_box(lmp, this, args, bodies, ownership, sites, step),
-    minimization(lmp, bodies, ownership, sites), respa(lmp),
-    outputs(lmp, bodies, ownership, sites, args.mol)
+    Fix(lmp, narg, arg), args(lmp, narg, arg), bodies(args.scheme), ownership(lmp, this, bodies),
+    sites(lmp, bodies, ownership), scene(lmp, this, args, bodies, ownership, sites),
+    other_fixes(scene), step(scene, fleet, other_fixes,
+                             [this](int vflag, double **f) {
+                               tally_virial(vflag, f);
+                             }),
+    driven_box(scene, step), respa(lmp)
 {
   time_integrate = rigid_flag = 1;
   scalar_flag = vector_flag = array_flag = local_flag = 1;
@@ -53,7 +50,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   extvector = -1;
   extarray = 0;
   size_array_rows = 0;
-  size_array_cols = size_local_cols = Outputs::COLUMNS;
+  size_array_cols = size_local_cols = COLUMNS;
   energy_global_flag = virial_global_flag = virial_peratom_flag = 1;
   centroidstressflag = CENTROID_AVAIL;
   thermo_virial = 1;
@@ -72,13 +69,14 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
   maxexchange = ownership.max_exchange();
   comm_forward = ownership.max_forward();
   comm_reverse = Ownership::MOST_NUMBERS;
-  size_vector = Outputs::ELEMENTS + step.elements();
+  size_vector = ELEMENTS + step.elements();
 
   if (group->dynamic[igroup])
     error->all(
         FLERR,
         "Fix gear/quat: group {} is dynamic, but bodies keep their atoms; use a static group",
         group->names[igroup]);
+  find_template(lmp, args.mol);    // it must exist
   create_bodies();
   if (bodies.number() == 0 && args.mol.empty())
     error->all(FLERR, "Fix gear/quat: no atom of the fix group is in a body");
@@ -88,7 +86,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
 
   // callbacks last, because LAMMPS would call a fix whose constructor has failed
   extlist = new int[size_vector]{1, 1};
-  for (int n = 0; n < step.elements(); ++n) extlist[Outputs::ELEMENTS + n] = step.extensive(n);
+  for (int n = 0; n < step.elements(); ++n) extlist[ELEMENTS + n] = step.extensive(n);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
   if (comm->me == 0)
@@ -115,7 +113,7 @@ int FixGearQuat::setmask()
   show_bodies();    // local data may be requested before the first run
   return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR |
       INITIAL_INTEGRATE_RESPA | FINAL_INTEGRATE_RESPA | (step.tolerance ? END_OF_STEP : 0) |
-      (step.bath.box.moves() ? POST_FORCE : 0) | MIN_PRE_EXCHANGE | MIN_PRE_NEIGHBOR |
+      (step.bath.moves_box() ? POST_FORCE : 0) | MIN_PRE_EXCHANGE | MIN_PRE_NEIGHBOR |
       MIN_PRE_FORCE | MIN_POST_FORCE | MIN_ENERGY;
 }
 
@@ -128,10 +126,10 @@ void FixGearQuat::init()
   fleet.members.clear();
   for (auto *other : modify->get_fix_list())
     if (auto *same = dynamic_cast<FixGearQuat *>(other)) fleet.members.push_back(&same->step);
-  refuse_scene(lmp, this, fleet, ownership);
+  refuse_scene(lmp, scene, fleet);
   if (is_minimized()) {
     driven_box.rest();
-    minimization.init();
+    refuse_minimizer();
     return;
   }
   driven_box.init();
@@ -152,7 +150,7 @@ void FixGearQuat::init()
 /// In a minimization, LAMMPS continues from the end of the last line search.
 void FixGearQuat::deform(int flag)
 {
-  if (flag == 0 && is_minimized()) minimization.put_back();
+  if (flag == 0 && is_minimized()) put_back_poses();
   flag == 0 ? ownership.note_box() : driven_box.end_remap();
 }
 
@@ -215,12 +213,12 @@ void FixGearQuat::setup(int vflag)
   sites.gather_loads(atom->f, atom->torque);
   driven_box.follow();
   step.begin_run();
-  step.bath.box.measure_virial(atom->f);
+  step.bath.measure_virial(atom->f);
   sites.place_velocities();
   bodies.forget_work();    // positions belong to the corrected poses
   tally_virial(vflag, atom->f);
   show_bodies();
-  if (first) report_scene(lmp, this, args, fleet, bodies, ownership, sites);
+  if (first) report_scene(lmp, scene, fleet);
   loose = loose_atoms();
 }
 
@@ -238,16 +236,9 @@ void FixGearQuat::count_rows()
   size_array_rows = std::max(size_array_rows, (int) bodies.number());
 }
 
-/// LAMMPS does not call a function to request local data.
-void FixGearQuat::show_bodies()
-{
-  array_local = outputs.local();
-  size_local_rows = bodies.nowned();
-}
-
 void FixGearQuat::pre_exchange()
 {
-  step.bath.box.flip();
+  step.bath.flip();
 }
 
 /// Atoms were exchanged, and other fixes may have inserted or removed bodies.
@@ -282,7 +273,7 @@ void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 /// vflag is 0 where forces of other fixes are evaluated alone.
 void FixGearQuat::post_force(int vflag)
 {
-  if (vflag) step.bath.box.measure_virial(atom->f);
+  if (vflag) step.bath.measure_virial(atom->f);
 }
 
 void FixGearQuat::end_step(double **f, double **torque)
@@ -291,14 +282,16 @@ void FixGearQuat::end_step(double **f, double **torque)
   sites.advance_densities(update->dt);
   if (box_change != NO_BOX_CHANGE) ownership.note_box();
   if (reads_at_end(lmp, this)) show_bodies();
-  if (step.bath.box.is_tilted()) next_reneighbor = update->ntimestep + 1;
+  if (step.bath.is_tilted()) next_reneighbor = update->ntimestep + 1;
   compare_calls(world);
 }
 
 void FixGearQuat::post_run()
 {
   if (is_minimized()) {
-    end_minimization();
+    sites.place_velocities();
+    ownership.note_box();
+    show_bodies();
     return;
   }
   step.end_run();
@@ -323,54 +316,6 @@ void FixGearQuat::tally_virial(int vflag, double **f)
                                   v_tally(1, &i, 1.0, constraint.virial, constraint.arm,
                                           constraint.force, constraint.centroid);
                                 });
-}
-
-/* ----------------------------------------------------------------------
-   energy minimization
-------------------------------------------------------------------------- */
-
-void FixGearQuat::min_setup(int vflag)
-{
-  step.forget("Fix gear/quat: minimize moves the bodies; histories are rebuilt");
-  ownership.spread_states();
-  min_post_force(vflag);
-  minimization.begin();
-  minimization.project(atom->f);
-  min_vflag = PROJECTED;
-}
-
-void FixGearQuat::min_pre_force(int /*vflag*/)
-{
-  minimization.fit();
-  comm->forward_comm();
-}
-
-/// Fix box/relax may request the pressure next.
-void FixGearQuat::min_post_force(int vflag)
-{
-  sites.gather_loads(atom->f, atom->torque);
-  tally_virial(vflag, atom->f);
-  min_vflag = vflag;
-}
-
-/// Called when all other fixes have added their forces.  In LAMMPS' setup, thermo output is printed
-/// before, with the virial of the forces before their projection.
-double FixGearQuat::min_energy(double *fextra)
-{
-  fextra[0] = 0.0;
-  if (min_vflag == PROJECTED)
-    sites.gather_loads(atom->f, nullptr);    // with the torques of atoms
-  else
-    min_post_force(min_vflag);
-  minimization.project(atom->f);
-  return 0.0;
-}
-
-void FixGearQuat::end_minimization()
-{
-  sites.place_velocities();
-  ownership.note_box();
-  show_bodies();
 }
 
 /* ----------------------------------------------------------------------
@@ -407,19 +352,8 @@ void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
 }
 
 /* ----------------------------------------------------------------------
-   outputs
+   requests of other commands
 ------------------------------------------------------------------------- */
-
-double FixGearQuat::compute_vector(int n)
-{
-  if (n >= size_vector)
-    error->all(FLERR,
-               "Fix gear/quat {}: output reads element {} of a vector of {}; the fix has other "
-               "keywords than when the output was defined: define it anew",
-               id, n + 1, size_vector);
-  if (n >= Outputs::ELEMENTS) return step.element(n - Outputs::ELEMENTS);
-  return outputs.element(n, step.present_integrator());
-}
 
 /// The command velocity create gives every atom its own velocity, of which bodies adopt the rigid
 /// part in their first run: until then, as for fix rigid, all degrees of freedom of atoms count.
@@ -452,13 +386,7 @@ int FixGearQuat::modify_param(int narg, char **arg)
         "Fix gear/quat: fix_modify extra/dof is the number of degrees of freedom, 0 or more, "
         "that temp or a pressure does not count; keywords of neither are in the command, or "
         "the number is negative");
-  step.bath.subtract(args.thermostat.subtracted);
   return 2;
-}
-
-double FixGearQuat::memory_usage()
-{
-  return ownership.memory_usage() + sites.memory_usage() + outputs.memory_usage();
 }
 
 /* ----------------------------------------------------------------------

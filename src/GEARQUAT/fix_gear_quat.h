@@ -21,16 +21,17 @@ FixStyle(gear/quat,FixGearQuat);
 #include "fix.h"
 
 #include "gear_quat_arguments.h"
+#include "gear_quat_assembly.h"
 #include "gear_quat_driven.h"
 #include "gear_quat_fields.h"
 #include "gear_quat_forces.h"
-#include "gear_quat_given_bodies.h"
-#include "gear_quat_outputs.h"
 #include "gear_quat_step.h"
 #include "gear_quat_styles.h"
 
+#include <array>
 #include <cmath>
 #include <map>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -57,20 +58,20 @@ class FixGearQuat : public Fix {
   void deform(int) override;
 
   void min_setup(int) override;
-  void min_pre_exchange() override { minimization.fit(); }
+  void min_pre_exchange() override;
   void min_pre_neighbor() override { pre_neighbor(); }
   void min_pre_force(int) override;
   void min_post_force(int) override;
   double min_energy(double *) override;
-  void min_store() override { minimization.store(); }
+  void min_store() override;
   /// A single degree of freedom, which stays 0: with it LAMMPS calls min_energy() and min_store().
   /// The minimizer moves bodies by the degrees of freedom of their atoms.
   int min_dof() override { return 1; }
   double max_alpha(double *) override { return HUGE_VAL; }
 
-  double compute_scalar() override { return outputs.energy_correction() + step.energy(); }
+  double compute_scalar() override;
   double compute_vector(int) override;
-  double compute_array(int i, int j) override { return outputs.global(i, j); }
+  double compute_array(int, int) override;
   bigint dof(int) override;
   int modify_param(int, char **) override;
   double memory_usage() override;
@@ -107,7 +108,7 @@ class FixGearQuat : public Fix {
   void unpack_restart(int, int nth) override { place = nth; }
   int size_restart(int i) override { return HEAD + ownership.packed_size(i); }
   int maxsize_restart() override { return HEAD + ownership.max_exchange(); }
-  void *extract(const char *name, int &dim) override { return outputs.extract(name, dim); }
+  void *extract(const char *, int &) override;
 
  private:
   // each object depends only on objects before it
@@ -117,18 +118,30 @@ class FixGearQuat : public Fix {
   GearQuat::Bodies bodies;
   GearQuat::Ownership ownership;
   GearQuat::Sites sites;
+  GearQuat::Scene scene;
   GearQuat::OtherFixes other_fixes;
   GearQuat::Step step;
   GearQuat::DrivenBox driven_box;
-  GearQuat::Minimization minimization;
   GearQuat::RespaForces respa;
-  GearQuat::Outputs outputs;
 
   std::map<int, GearQuat::StatedMolecule> stated;    ///< of molecules of the template, by numbers
 
   GearQuat::Fields file;            ///< the numbers of a restart file that were not read yet
   int place = 0;                    ///< number of other fixes whose data of an atom precede in it
   static constexpr int HEAD = 2;    ///< numbers of an atom before its data: their count, and its ID
+
+  // outputs
+
+  static constexpr int ELEMENTS = 8,
+                       COLUMNS = 28;    ///< of the vector, before those of Step; of rows
+  using Row = std::array<double, COLUMNS>;
+  std::vector<Row> mine, all;
+  std::vector<double *> rows;       ///< of `mine`
+  int gathered = -1;                ///< number of placements when `all` was gathered
+  std::vector<int> body_of_atom;    ///< the last results of extract()
+  int nbody = 0;
+  std::vector<double> masstotal;
+  std::vector<Row> owned_rows() const;
 
   bigint loose = 0;          ///< atoms of the group in no body, when a run began
   int told_of_groups = 0;    ///< their bits: a warning about parts of bodies was given
@@ -137,6 +150,9 @@ class FixGearQuat : public Fix {
       0;    // vflag of the current evaluation in a minimization; or forces were projected
 
   bool is_minimized() const;
+  void refuse_minimizer() const;
+  void project_forces();
+  void put_back_poses();
   void create_bodies();
   void update_bodies();
   void put_back();
@@ -144,7 +160,6 @@ class FixGearQuat : public Fix {
   void resume();
   void begin_step(int, double **, double **);
   void end_step(double **, double **);
-  void end_minimization();
   void tally_virial(int, double **);
   void count_rows();
   void show_bodies();

@@ -187,7 +187,8 @@ void Arguments::check_ranges()
     if (row.kind != Keyword::INTEGER) continue;
     const Keyword::Range &range = row.range(scheme.first());
     KeywordValue value;
-    value.integer = row.standard_of(range, !scheme.tuned());
+    const bool other = !scheme.tuned() && range.standard_gear;
+    value.integer = other ? range.standard_gear : range.standard;
     const bool is_stated = given.count(row.name) && !given.at(row.name).is("auto");
     if (is_stated) value = given.at(row.name);
     row.store(*this, value);
@@ -235,69 +236,49 @@ void Arguments::check_random()
   automatic_values = false;
 }
 
-/// Directions without a period have no pressure, and tilts can only be free together.
+/// Directions without a period have no pressure, tilts can only be free together, and coupled
+/// directions must have the same numbers.
 void Arguments::check_pressure()
 {
   PressureWords &p = pressure;
   if (!p.any()) return;
-  if (domain->dimension == 2) {
-    for (const char *keyword : {"z", "xz", "yz"})
-      if (given.count(keyword))
-        error->all(FLERR,
-                   "Fix gear/quat: in two dimensions there is no pressure component z, xz or yz");
-    p.on[2] = p.on[3] = p.on[4] = false;
-  }
-  if (domain->dimension == 2 && p.tied[1] == 1 && p.tied[2] != 2)    // xyz is equivalent to xy
+  const bool flat = domain->dimension == 2;
+  for (const char *keyword : {"z", "xz", "yz"})
+    if (flat && given.count(keyword))
+      error->all(FLERR,
+                 "Fix gear/quat: in two dimensions there is no pressure component z, xz or yz");
+  if (flat) p.on[2] = p.on[3] = p.on[4] = false;
+  if (flat && p.tied[1] == 1 && p.tied[2] != 2)    // xyz is equivalent to xy
     error->all(FLERR,
                "Fix gear/quat couple: in two dimensions there is no edge along z; use couple xy");
-  check_directions();
-  check_coupling();
-  if (thermostat.damp == 0.0 && !given.count("pchain")) p.length = 0;
-}
-
-static std::string name_of_direction(int k)
-{
-  return {"xyz"[k]};
-}
-
-void Arguments::check_directions() const
-{
-  const PressureWords &p = pressure;
   for (int k = 0; k < 3; ++k)
     if (p.on[k] && !domain->periodicity[k])
       error->all(
           FLERR,
           "Fix gear/quat: the box is not periodic along {0}, so there is no constant pressure "
           "along {0}; use boundary p for {0}, or keywords for the other directions",
-          name_of_direction(k));
-  if (!p.shears()) return;
-  if (!domain->triclinic)
+          "xyz"[k]);
+  if (p.shears() && !domain->triclinic)
     error->all(FLERR,
                "Fix gear/quat: keywords tri, xy, xz and yz require a triclinic box; write "
                "change_box all triclinic before this fix");
-  const bool flat = domain->dimension == 2;
   for (int k = 0; k < PressureWords::COMPONENTS; ++k)
-    if (!p.on[k] && !(flat && k >= 2 && k <= 4))
+    if (p.shears() && !p.on[k] && !(flat && k >= 2 && k <= 4))
       error->all(FLERR,
                  "Fix gear/quat: tilts of the box are free only if all components of the pressure "
                  "are given, which are {}; use keyword tri, or add those that are missing",
                  flat ? "x, y and xy" : "x, y, z, xy, xz and yz");
-}
-
-/// Coupled directions must have the same numbers.
-void Arguments::check_coupling() const
-{
-  const PressureWords &p = pressure;
   for (int k = 1; k < 3; ++k) {
     const int first = p.tied[k];
-    if (first == k || (domain->dimension == 2 && k == 2)) continue;
+    if (first == k || (flat && k == 2)) continue;
     if (!p.on[k] || !p.on[first] || p.start[k] != p.start[first] || p.stop[k] != p.stop[first] ||
         p.period[k] != p.period[first])
       error->all(FLERR,
                  "Fix gear/quat couple: directions {} and {} need keywords with the same Pstart, "
                  "Pstop and Pdamp",
-                 name_of_direction(first), name_of_direction(k));
+                 "xyz"[first], "xyz"[k]);
   }
+  if (thermostat.damp == 0.0 && !given.count("pchain")) p.length = 0;
 }
 
 /* ----------------------------------------------------------------------
@@ -402,15 +383,11 @@ std::vector<tagint> Arguments::group_ids(const Selection &selection) const
   return ids;
 }
 
-/// The largest value and the largest difference of values: doubles up to this limit represent
-/// integers exactly.
-static constexpr double MOST_CUSTOM = std::min((double) MAXTAGINT, 9007199254740992.0);
-
 /// Bodies are numbered from the smallest value in the group, as in fix rigid.
 std::vector<tagint> Arguments::custom_ids(const Selection &selection) const
 {
-  std::vector<tagint> ids(atom->nlocal, 0);
-
+  constexpr double MOST = std::min(0.5 * MAXTAGINT, 1.0e15);    // doubles represent differences
+  std::vector<double> value(atom->nlocal + 1);
   if (utils::strmatch(custom, "^i_")) {
     int is_double, columns;
     const int index = atom->find_custom(custom.c_str() + 2, is_double, columns);
@@ -419,7 +396,7 @@ std::vector<tagint> Arguments::custom_ids(const Selection &selection) const
                  "Fix gear/quat custom {} requires an integer vector of that name, made by "
                  "fix property/atom",
                  custom);
-    std::copy_n(atom->ivector[index], atom->nlocal, ids.begin());
+    std::copy_n(atom->ivector[index], atom->nlocal, value.begin());
   } else if (utils::strmatch(custom, "^v_")) {
     Variable *variable = input->variable;
     const int index = variable->find(custom.c_str() + 2);
@@ -428,34 +405,25 @@ std::vector<tagint> Arguments::custom_ids(const Selection &selection) const
                  "Fix gear/quat custom {} requires an atom-style or atomfile-style variable "
                  "of that name",
                  custom);
-    std::vector<double> value(atom->nlocal + 1);
     variable->compute_atom(index, 0, value.data(), 1, 0);
-    tagint unusable = 0;
-    for (int i = 0; i < atom->nlocal; ++i) {
-      if (!selection.has(atom->mask[i])) continue;
-      if (std::fabs(value[i]) < MOST_CUSTOM)
-        ids[i] = (tagint) std::llround(value[i]);
-      else
-        unusable = atom->tag[i];
-    }
-    if ((unusable = over_ranks(MPI_MAX, unusable, world)))
-      error->all(FLERR, "Fix gear/quat custom {}: the value of atom {} is not a number below {:g}",
-                 custom, unusable, MOST_CUSTOM);
   } else
     error->all(FLERR, "Fix gear/quat custom: {} is neither i_name nor v_name", custom);
 
-  bigint largest[2] = {-MAXBIGINT, -MAXBIGINT};    // of the value, and of its negative
+  tagint unusable = 0;
+  double smallest = MOST;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!selection.has(atom->mask[i])) continue;
+    value[i] = std::round(value[i]);
+    smallest = std::min(smallest, value[i]);
+    if (!(std::fabs(value[i]) < MOST)) unusable = atom->tag[i];
+  }
+  if ((unusable = over_ranks(MPI_MAX, unusable, world)))
+    error->all(FLERR, "Fix gear/quat custom {}: the value of atom {} is not a number below {:g}",
+               custom, unusable, MOST);
+  smallest = over_ranks(MPI_MIN, smallest, world);
+  std::vector<tagint> ids(atom->nlocal, 0);
   for (int i = 0; i < atom->nlocal; ++i)
-    if (selection.has(atom->mask[i])) {
-      largest[0] = std::max(largest[0], (bigint) ids[i]);
-      largest[1] = std::max(largest[1], -(bigint) ids[i]);
-    }
-  const auto all = over_ranks(MPI_MAX, largest, world);
-  if ((double) all[0] + (double) all[1] >= MOST_CUSTOM)
-    error->all(FLERR, "Fix gear/quat custom {}: values from {} to {} are too far apart", custom,
-               -all[1], all[0]);
-  for (int i = 0; i < atom->nlocal; ++i)
-    ids[i] = selection.has(atom->mask[i]) ? (tagint) (ids[i] + all[1] + 1) : 0;
+    if (selection.has(atom->mask[i])) ids[i] = (tagint) (value[i] - smallest) + 1;
   return ids;
 }
 

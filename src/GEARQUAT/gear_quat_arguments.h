@@ -80,12 +80,6 @@ struct Keyword {
   /// The range for a formulation, if there are two ranges.
   const Range &range(bool first) const { return ranges[first ? ranges.size() - 1 : 0]; }
 
-  /// The default of an INTEGER.
-  int standard_of(const Range &range, bool gear) const
-  {
-    return gear && range.standard_gear ? range.standard_gear : range.standard;
-  }
-
   /// Reads the words after arg[0] into value and returns their number.  Invalid words end the run
   /// on all ranks.
   int read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const;
@@ -226,8 +220,6 @@ struct Arguments : protected Pointers {
   void check_control();
   void check_random();
   void check_pressure();
-  void check_directions() const;
-  void check_coupling() const;
 
   /// The atoms that the body style assigns to bodies.
   struct Selection {

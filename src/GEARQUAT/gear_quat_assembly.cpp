@@ -48,12 +48,37 @@ static const char *const FAULT_TEXTS[] = {
     "Fix gear/quat, infile or template: the center of mass of body {} is far away from all its "
     "atoms; are its position and its image flags right?"};
 
-static void merge_sums(ExactSum *sums, const ExactSum *others, int n)
-{
-  for (int k = 0; k < n; ++k) sums[k].add(others[k]);
-}
-
 namespace {
+
+/// The site with the smallest value, and among these with the smallest atom ID.
+struct First {
+  double value = NONE;
+  tagint tag = MAXTAGINT;    ///< as long as there is no such site
+  int rank = 0, local = 0;
+  double x[3] = {};    ///< its place, or another number
+
+  void take(const First &other)
+  {
+    if (other.value < value || (other.value == value && other.tag < tag)) *this = other;
+  }
+};
+
+/// Results of one pass over the sites, for each part; merged, for the whole body: the largest of
+/// some numbers, sums, and sites.
+template <size_t LARGEST, size_t SUMS, size_t SITES> struct Pass {
+  std::array<double, LARGEST> largest;
+  std::array<ExactSum, SUMS> sums;
+  std::array<First, SITES> sites;
+
+  Pass() { largest.fill(-NONE); }
+  void raise(int k, double number) { largest[k] = std::max(largest[k], number); }
+  void merge(const Pass &other)
+  {
+    for (size_t k = 0; k < LARGEST; ++k) raise(k, other.largest[k]);
+    for (size_t k = 0; k < SUMS; ++k) sums[k].add(other.sums[k]);
+    for (size_t k = 0; k < SITES; ++k) sites[k].take(other.sites[k]);
+  }
+};
 
 class Assembly : protected Pointers {
  public:
@@ -69,7 +94,7 @@ class Assembly : protected Pointers {
     find_moments();
     const std::vector<Momenta> momenta = find_momenta();
     for (int part = 0; part < parts.number(); ++part) {
-      made[part].body.extent = std::sqrt(momenta[part].extent2);
+      made[part].body.extent = std::sqrt(momenta[part].largest[EXTENT2]);
       if (made[part].body.from_file) check_place(part, momenta[part]);
       find_axes(part, momenta[part]);
     }
@@ -110,87 +135,21 @@ class Assembly : protected Pointers {
     tagint tag;
   };
 
-  // Results of one pass over the sites, for each part; merged, for the whole body.  A pass needs
-  // the results of earlier passes.
+  // A pass needs the results of earlier passes.
 
-  struct Sizes {    ///< scales of the sums
-    bigint natoms;
-    tagint first;         ///< smallest atom ID
-    double first_x[3];    ///< of this atom, unwrapped: where image flags are relative to
-    double mass, speed, own_inertia, own_momentum;    ///< largest component of a site
-    int finite;
-    void merge(const Sizes &other)
-    {
-      natoms += other.natoms;
-      if (other.first < first) {
-        first = other.first;
-        std::copy_n(other.first_x, 3, first_x);
-      }
-      mass = std::max(mass, other.mass);
-      speed = std::max(speed, other.speed);
-      own_inertia = std::max(own_inertia, other.own_inertia);
-      own_momentum = std::max(own_momentum, other.own_momentum);
-      finite = finite && other.finite;
-    }
-  };
-  struct Extremes {
-    double lo[3], hi[3];    ///< box around the sites
-    ExactSum mass;
-    void merge(const Extremes &other)
-    {
-      for (int k = 0; k < 3; ++k) {
-        lo[k] = std::min(lo[k], other.lo[k]);
-        hi[k] = std::max(hi[k], other.hi[k]);
-      }
-      mass.add(other.mass);
-    }
-  };
-  struct Moments {    ///< about the middle of the box around the sites
-    double distance2;
-    tagint owner;    ///< atom ID of the site nearest to the middle
-    int rank, local;
-    double x[3];    ///< of this site
-    ExactSum center[3], momentum[3];
-    void merge(const Moments &other)
-    {
-      if (other.distance2 < distance2 || (other.distance2 == distance2 && other.owner < owner)) {
-        distance2 = other.distance2;
-        owner = other.owner;
-        rank = other.rank;
-        local = other.local;
-        std::copy_n(other.x, 3, x);
-      }
-      merge_sums(center, other.center, 3);
-      merge_sums(momentum, other.momentum, 3);
-    }
-  };
-  struct Momenta {          ///< about the center of mass
-    double extent2;         ///< largest distance of a site from the owner atom, squared
-    double from_center2;    ///< smallest one from the center of mass
-    ExactSum inertia_space[6], angular_momentum_space[3];    ///< xx, xy, xz, yy, yz, zz
-    void merge(const Momenta &other)
-    {
-      extent2 = std::max(extent2, other.extent2);
-      from_center2 = std::min(from_center2, other.from_center2);
-      merge_sums(inertia_space, other.inertia_space, 6);
-      merge_sums(angular_momentum_space, other.angular_momentum_space, 3);
-    }
-  };
-  struct Sides {    ///< of the heaviest site outside of the plane across each axis
-    double mass[3];
-    tagint tag[3];     ///< MAXTAGINT: there is no such site
-    double side[3];    ///< distance from the plane
-    void merge(const Sides &other)
-    {
-      for (int k = 0; k < 3; ++k) {
-        if (other.mass[k] < mass[k] || (other.mass[k] == mass[k] && other.tag[k] >= tag[k]))
-          continue;
-        mass[k] = other.mass[k];
-        tag[k] = other.tag[k];
-        side[k] = other.side[k];
-      }
-    }
-  };
+  enum { MASS, SPEED, OWN_INERTIA, OWN_MOMENTUM, SIZES };    ///< of a component
+  /// Scales of the sums; the number of sites; the first site, where image flags are relative to.
+  using Sizes = Pass<SIZES, 1, 1>;
+  /// The box around the sites: coordinates at its upper faces, and negative ones at its lower faces;
+  /// the mass.
+  using Extremes = Pass<6, 1, 0>;
+  /// First moments of mass and velocity about the middle of this box; the site nearest to it.
+  using Moments = Pass<0, 6, 1>;
+  enum { EXTENT2, MINUS_FROM_CENTER2, DISTANCES };    ///< from the owner atom, squared, and so on
+  /// About the center of mass: inertia xx, xy, xz, yy, yz, zz and angular momentum in space.
+  using Momenta = Pass<DISTANCES, 9, 0>;
+  /// The heaviest site outside of the plane across each axis, and its distance from the plane.
+  using Sides = Pass<0, 0, 3>;
   std::vector<Sizes> sizes;
   std::vector<Extremes> extremes;
   std::vector<Moments> moments;
@@ -202,9 +161,11 @@ class Assembly : protected Pointers {
 
   void unwrapped(int part, int i, double *x) const
   {
-    const double *first = sizes[part].first_x;
+    const double *first = sizes[part].sites[0].x;
     domain->unmap(atom->x[i], atom->image[i], x);
-    undo_image_flag_overflow(domain, first, x);
+    double way[3];
+    through(domain->h, image_flag_overflow(domain, first, x).data(), way);
+    for (int k = 0; k < 3; ++k) x[k] += way[k];
   }
 
   /// act: of every site of a part.
@@ -216,9 +177,9 @@ class Assembly : protected Pointers {
     double mass, center, momentum, inertia, angular_momentum;
   };
   /// add: takes the sites of a part into its item.  Returns the items of whole bodies.
-  template <class Item, class Add> std::vector<Item> over_sites(const Item &none, Add add) const
+  template <class Item, class Add> std::vector<Item> over_sites(Add add) const
   {
-    std::vector<Item> items(parts.number(), none);
+    std::vector<Item> items(parts.number());
     for (int part = 0; part < parts.number(); ++part) add(items[part], part);
     parts.merge(items);
     return items;
@@ -239,83 +200,81 @@ class Assembly : protected Pointers {
     return site;
   }
 
+  bigint number_of_sites(int part) const { return (bigint) sizes[part].sums[0].value(); }
+
   std::array<double, 3> middle(int part) const
   {
-    const double *lo = extremes[part].lo, *hi = extremes[part].hi;
-    return {0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), 0.5 * (lo[2] + hi[2])};
+    const double *hi = extremes[part].largest.data();
+    return {0.5 * (hi[0] - hi[3]), 0.5 * (hi[1] - hi[4]), 0.5 * (hi[2] - hi[5])};
   }
 
   /// No site is further away from the middle of the box around the sites.
   double radius(int part) const
   {
-    return 0.5 * std::sqrt(distance2(extremes[part].lo, extremes[part].hi));
+    const double *hi = extremes[part].largest.data();
+    const double edges[3] = {hi[0] + hi[3], hi[1] + hi[4], hi[2] + hi[5]};
+    return 0.5 * length(edges);
   }
 
   /// The scales of sums over all sites of a body, from bounds of the terms: no arm is longer than twice
   /// the radius.
   Scales scales(int part) const
   {
-    const Sizes &size = sizes[part];
-    const double r = extremes.empty() ? 0.0 : radius(part), mass = size.mass;
-    const auto of = [&size](double bound) {
-      return ExactSum::scale_of(bound * std::max(1.0, (double) size.natoms / MANY));
+    const auto &size = sizes[part].largest;
+    const double r = extremes.empty() ? 0.0 : radius(part), mass = size[MASS];
+    const double many = std::max(1.0, (double) number_of_sites(part) / MANY);
+    const auto of = [many](double bound) {
+      return ExactSum::scale_of(bound * many);
     };
-    return {of(mass), of(mass * r), of(mass * size.speed),
-            of(mass * 4.0 * r * r + size.own_inertia),
-            of(mass * 8.0 * r * size.speed + size.own_momentum)};
+    return {of(mass), of(mass * r), of(mass * size[SPEED]),
+            of(mass * 4.0 * r * r + size[OWN_INERTIA]),
+            of(mass * 8.0 * r * size[SPEED] + size[OWN_MOMENTUM])};
   }
 
   void find_sizes()
   {
-    const Sizes none = {0, MAXTAGINT, {}, 0.0, 0.0, 0.0, 0.0, 1};
-    sizes = over_sites(none, [this](Sizes &all, int part) {
+    sizes = over_sites<Sizes>([this](Sizes &all, int part) {
       Body &body = made[part].body;
       body.id = parts.key(part);
       body.from_file = given.count(body.id) > 0;
       for (const int i : parts.atoms(part)) {
         const double mass = mass_of(i), *v = atom->v[i];
-        double x[3], inertia[9] = {}, momentum[3] = {};
-        domain->unmap(atom->x[i], atom->image[i], x);
+        double inertia[9] = {}, momentum[3] = {};
+        First site = {0.0, atom->tag[i]};
+        domain->unmap(atom->x[i], atom->image[i], site.x);
         if (extended) extended->own_momenta(i, mass, inertia, momentum);
-        ++all.natoms;
-        if (atom->tag[i] < all.first) {
-          all.first = atom->tag[i];
-          std::copy_n(x, 3, all.first_x);
-        }
-        all.mass = std::max(all.mass, std::fabs(mass));
+        all.sums[0].add(1.0, 1.0);
+        all.sites[0].take(site);
+        all.raise(MASS, std::fabs(mass));
         for (int k = 0; k < 3; ++k) {
-          all.speed = std::max(all.speed, std::fabs(v[k]));
-          all.own_momentum = std::max(all.own_momentum, std::fabs(momentum[k]));
+          all.raise(SPEED, std::fabs(v[k]));
+          all.raise(OWN_MOMENTUM, std::fabs(momentum[k]));
         }
-        for (const double one : inertia)
-          all.own_inertia = std::max(all.own_inertia, std::fabs(one));
-        double sum = mass + x[0] + x[1] + x[2];
+        for (const double one : inertia) all.raise(OWN_INERTIA, std::fabs(one));
+        double sum = mass + site.x[0] + site.x[1] + site.x[2];
         if (!body.from_file)
           for (int k = 0; k < 3; ++k) sum += v[k] + momentum[k] + inertia[4 * k];
-        if (!std::isfinite(sum)) all.finite = 0;
+        if (!std::isfinite(sum)) faulty[NOT_FINITE] = body.id;
       }
     });
-    for (int part = 0; part < parts.number(); ++part)
-      if (!sizes[part].finite) faulty[NOT_FINITE] = parts.key(part);
   }
 
   void find_extremes()
   {
-    const Extremes none = {{NONE, NONE, NONE}, {-NONE, -NONE, -NONE}, ExactSum()};
-    extremes = over_sites(none, [this](Extremes &all, int part) {
+    extremes = over_sites<Extremes>([this](Extremes &all, int part) {
       const double unit = scales(part).mass;
       visit(part, [&](const Site &site) {
         for (int k = 0; k < 3; ++k) {
-          all.lo[k] = std::min(all.lo[k], site.x[k]);
-          all.hi[k] = std::max(all.hi[k], site.x[k]);
+          all.raise(k, site.x[k]);
+          all.raise(3 + k, -site.x[k]);
         }
-        all.mass.add(site.mass, unit);
+        all.sums[0].add(site.mass, unit);
       });
     });
     for (int part = 0; part < parts.number(); ++part) {
       Body &body = made[part].body;
-      body.natoms = (tagint) sizes[part].natoms;
-      body.rigid.mass = extremes[part].mass.value();
+      body.natoms = (tagint) number_of_sites(part);
+      body.rigid.mass = extremes[part].sums[0].value();
       if (!body.from_file && !(body.rigid.mass > 0.0)) faulty[MASSLESS] = body.id;
     }
   }
@@ -323,22 +282,16 @@ class Assembly : protected Pointers {
   /// The owner is the site nearest to the middle of the body, which needs the fewest ghosts.
   void find_moments()
   {
-    const Moments none = {NONE, MAXTAGINT, 0, 0, {}, {}, {}};
-    moments = over_sites(none, [&](Moments &all, int part) {
+    moments = over_sites<Moments>([&](Moments &all, int part) {
       const Scales scale = scales(part);
       const auto center = middle(part);
       visit(part, [&](const Site &site) {
-        const double d2 = distance2(site.x, center.data());
-        if (d2 < all.distance2 || (d2 == all.distance2 && site.tag < all.owner)) {
-          all.distance2 = d2;
-          all.owner = site.tag;
-          all.rank = comm->me;
-          all.local = site.local;
-          std::copy_n(site.x, 3, all.x);
-        }
+        First one = {distance2(site.x, center.data()), site.tag, comm->me, site.local};
+        std::copy_n(site.x, 3, one.x);
+        all.sites[0].take(one);
         for (int k = 0; k < 3; ++k) {
-          all.center[k].add(site.mass * (site.x[k] - center[k]), scale.center);
-          all.momentum[k].add(site.mass * site.v[k], scale.momentum);
+          all.sums[k].add(site.mass * (site.x[k] - center[k]), scale.center);
+          all.sums[3 + k].add(site.mass * site.v[k], scale.momentum);
         }
       });
     });
@@ -346,14 +299,15 @@ class Assembly : protected Pointers {
       AssembledBody &one = made[part];
       const auto from = middle(part);
       const double mass = one.body.rigid.mass;
-      one.owner = moments[part].owner;
-      one.owner_rank = moments[part].rank;
-      one.local = moments[part].local;
+      const First &owner = moments[part].sites[0];
+      one.owner = owner.tag;
+      one.owner_rank = owner.rank;
+      one.local = owner.local;
       for (int k = 0; k < 3; ++k) {
-        one.state.center[k] = from[k] + moments[part].center[k].value() / mass;
-        one.state.velocity[k] = moments[part].momentum[k].value() / mass;
+        one.state.center[k] = from[k] + moments[part].sums[k].value() / mass;
+        one.state.velocity[k] = moments[part].sums[3 + k].value() / mass;
       }
-      if (sizes[part].natoms == 1)    // without rounding
+      if (one.body.natoms == 1)    // without rounding
         std::copy_n(atom->v[parts.atoms(part).first[0]], 3, one.state.velocity);
       check_parts(part);
       if (one.body.from_file) take_given(given.at(one.body.id), part);
@@ -362,8 +316,7 @@ class Assembly : protected Pointers {
 
   std::vector<Momenta> find_momenta()
   {
-    const Momenta none = {0.0, NONE, {}, {}};
-    return over_sites(none, [this](Momenta &all, int part) {
+    return over_sites<Momenta>([this](Momenta &all, int part) {
       const Scales scale = scales(part);
       const BodyState &state = made[part].state;
       const bool counts = !made[part].body.from_file;
@@ -373,18 +326,17 @@ class Assembly : protected Pointers {
         for (int k = 0; k < 3; ++k) speed[k] = site.v[k] - state.velocity[k];
         cross3(arm, speed, spin);
         const double r2 = dot3(arm, arm);
-        all.extent2 = std::max(all.extent2, distance2(site.x, moments[part].x));
-        all.from_center2 = std::min(all.from_center2, r2);
+        all.raise(EXTENT2, distance2(site.x, moments[part].sites[0].x));
+        all.raise(MINUS_FROM_CENTER2, -r2);
         if (!counts) return;
         if (extended) extended->own_momenta(site.local, site.mass, own_inertia, own_momentum);
         for (int k = 0; k < 3; ++k)
-          all.angular_momentum_space[k].add(own_momentum[k] + site.mass * spin[k],
-                                            scale.angular_momentum);
+          all.sums[6 + k].add(own_momentum[k] + site.mass * spin[k], scale.angular_momentum);
         for (int m = 0; m < 6; ++m) {
           const int k = ROW[m], l = COLUMN[m];
-          all.inertia_space[m].add(own_inertia[3 * k + l] +
-                                       site.mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]),
-                                   scale.inertia);
+          all.sums[m].add(own_inertia[3 * k + l] +
+                              site.mass * ((k == l ? r2 : 0.0) - arm[k] * arm[l]),
+                          scale.inertia);
         }
       });
     });
@@ -412,8 +364,7 @@ class Assembly : protected Pointers {
   {
     double tensor[9];
     for (int m = 0; m < 6; ++m)
-      tensor[3 * ROW[m] + COLUMN[m]] = tensor[3 * COLUMN[m] + ROW[m]] =
-          momenta.inertia_space[m].value();
+      tensor[3 * ROW[m] + COLUMN[m]] = tensor[3 * COLUMN[m] + ROW[m]] = momenta.sums[m].value();
     AssembledBody &one = made[part];
     if (one.body.from_file) {
       const double *i = given.at(one.body.id).inertia;
@@ -437,7 +388,7 @@ class Assembly : protected Pointers {
     double momentum_space[3], momentum_body[3];
     for (int k = 0; k < 3; ++k)
       momentum_space[k] = one.body.from_file ? given.at(one.body.id).angular_momentum_space[k]
-                                             : momenta.angular_momentum_space[k].value();
+                                             : momenta.sums[6 + k].value();
     quaternion_from_matrix(one.axes, one.state.q);
     to_body(one.axes, momentum_space, momentum_body);
     for (int k = 0; k < 3; ++k)
@@ -455,22 +406,14 @@ class Assembly : protected Pointers {
   void orient_axes()
   {
     if (domain->dimension != 3) return;
-    const auto along = [this](int part, const Site &site, double *components) {
-      double arm[3];
-      for (int k = 0; k < 3; ++k) arm[k] = site.x[k] - made[part].state.center[k];
-      to_body(made[part].axes, arm, components);
-    };
-    const Sides none = {{-1.0, -1.0, -1.0}, {MAXTAGINT, MAXTAGINT, MAXTAGINT}, {}};
-    const std::vector<Sides> sides = over_sites(none, [&](Sides &all, int part) {
+    const auto sides = over_sites<Sides>([this](Sides &all, int part) {
       visit(part, [&](const Site &site) {
-        Sides one = none;
-        along(part, site, one.side);
-        for (int k = 0; k < 3; ++k) {
-          if (std::fabs(one.side[k]) < ON_AXIS * radius(part)) continue;
-          one.mass[k] = site.mass;
-          one.tag[k] = site.tag;
-        }
-        all.merge(one);
+        double arm[3], side[3];
+        for (int k = 0; k < 3; ++k) arm[k] = site.x[k] - made[part].state.center[k];
+        to_body(made[part].axes, arm, side);
+        for (int k = 0; k < 3; ++k)
+          if (std::fabs(side[k]) >= ON_AXIS * radius(part))
+            all.sites[k].take({-site.mass, site.tag, 0, 0, {side[k]}});
       });
     });
     for (int part = 0; part < parts.number(); ++part) direct(made[part].axes, sides[part]);
@@ -482,8 +425,8 @@ class Assembly : protected Pointers {
     // false if all sites are in the plane perpendicular to the axis
 
     const auto turn = [&](int k) {
-      if (sides.tag[k] == MAXTAGINT) return false;
-      if (sides.side[k] < 0.0)
+      if (sides.sites[k].tag == MAXTAGINT) return false;
+      if (sides.sites[k].x[0] < 0.0)
         for (int i = 3 * k; i < 3 * k + 3; ++i) axes[i] = -axes[i];
       return true;
     };
@@ -500,7 +443,7 @@ class Assembly : protected Pointers {
     constexpr double FAR = 1.0 / 3.0;    // of a period
     const auto center = middle(part);
     double way[3], periods[3];
-    for (int k = 0; k < 3; ++k) way[k] = moments[part].x[k] - center[k];
+    for (int k = 0; k < 3; ++k) way[k] = moments[part].sites[0].x[k] - center[k];
     to_periods(domain, way, periods);
     for (int k = 0; k < domain->dimension; ++k)
       if (domain->periodicity[k] && std::fabs(periods[k]) > FAR) faulty[TORN] = parts.key(part);
@@ -512,7 +455,7 @@ class Assembly : protected Pointers {
   {
     const double longest = std::max({domain->xprd, domain->yprd, domain->zprd});
     const double far = made[part].body.extent + 0.5 * longest;
-    if (!(momenta.from_center2 <= far * far)) faulty[APART] = made[part].body.id;
+    if (!(-momenta.largest[MINUS_FROM_CENTER2] <= far * far)) faulty[APART] = made[part].body.id;
   }
 
   /// Sums over masses satisfy all of this automatically, up to rounding.

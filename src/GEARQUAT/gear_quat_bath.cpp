@@ -11,7 +11,9 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix.h"
 #include "force.h"
+#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -56,27 +58,35 @@ static Scheme scheme_of_bath(Scheme scheme)
   return scheme;
 }
 
-Bath::Bath(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, const Sites &sites) :
-    Pointers(lmp), temperature(lmp, fix, bodies, args.thermostat, args.pressure),
-    box(lmp, fix, bodies, sites, args.pressure, temperature), bodies(bodies),
-    words(args.thermostat),
+Bath::Bath(const Scene &scene) :
+    Scene(scene), temperature(scene), words(args.thermostat), asked(args.pressure),
+    id(asked.any() ? std::string(fix->id) + "_virial" : ""),
     thermostats(words.damp > 0.0 && !words.is_random() ? 1 + words.separate : 0),
-    chains(thermostats, Chain(words.length)), isokinetic(lmp, bodies, args.isokinetic, args.rescale)
+    chains(thermostats, Chain(words.length)), box(lmp, asked.fixed)
 {
-  if (box.moves() && args.pressure.length > 0) chains.emplace_back(args.pressure.length);
+  if (moves_box())
+    modify->add_compute(id + " all pressure NULL pair bond angle dihedral improper kspace");
+  if (moves_box() && asked.length > 0) chains.emplace_back(asked.length);
   set_scheme(scheme_of_bath(args.scheme));
   made = setting();
+}
+
+Bath::~Bath()
+{
+  if (moves_box() && own()) modify->delete_compute(id);
 }
 
 void Bath::set_scheme(const Scheme &scheme)
 {
   Scheme of_heat;
   of_heat.formulation = Formulation::FIRST;
-  of_heat.rows = values_of_heat = isokinetic.acts()
+  of_heat.rows = values_of_heat = is_isokinetic()
       ? scheme.values()
       : std::min(scheme.values() - scheme.remembers(), FIRST_MOST);
   coefficients_of_heat = CorrectorCoefficients(of_heat).c;
-  box.set_scheme(scheme);
+  if (!moves_box()) return;
+  if (scheme.remembers() && !times) times.emplace(false);
+  cell.set_scheme(scheme);
 }
 
 /* ----------------------------------------------------------------------
@@ -90,14 +100,14 @@ double Bath::of_both(int chain, const double (&parts)[2]) const
 
 double Bath::twice_of(int chain) const
 {
-  return chain < thermostats ? of_both(chain, temperature.twice) : box.twice_kinetic();
+  return chain < thermostats ? of_both(chain, temperature.twice) : twice_of_box();
 }
 
 ChainTarget Bath::target_of(int chain, double steps_ahead, double h) const
 {
   const bool of_box = chain >= thermostats;
-  return temperature.target(of_box ? box.freedoms() : of_both(chain, temperature.freedoms),
-                            of_box ? box.period() : words.damp, steps_ahead, h);
+  return temperature.target(of_box ? freedoms_of_box() : of_both(chain, temperature.freedoms),
+                            of_box ? period_of_box() : words.damp, steps_ahead, h);
 }
 
 double Bath::strongest_friction() const
@@ -114,7 +124,11 @@ void Bath::advance(int chain, double twice_kinetic, double h, int values)
   if (!std::isfinite(twice_kinetic)) return;
   const ChainTarget target = target_of(chain, -1.0, h);
   if (chains[chain].advance(target, twice_kinetic, h, values)) return;
-  if (chain >= thermostats) box.refuse_speed();
+  if (chain >= thermostats)
+    error->all(FLERR,
+               "Fix gear/quat: in step {} the box moves so fast that its thermostat cannot follow; "
+               "begin nearer to the target pressure, or use a longer Pdamp",
+               update->ntimestep);
   const double degree = force->mvv2e / force->boltz;
   error->all(FLERR,
              "Fix gear/quat temp: in step {} the bodies have a temperature of {:.4g}, {:.3g} times "
@@ -130,15 +144,13 @@ void Bath::advance(int chain, double twice_kinetic, double h, int values)
 
 void Bath::begin_run(bool anew, double h)
 {
-  if (isokinetic.acts()) isokinetic.begin_run(anew);
-  if (isokinetic.acts() || !has_temperature()) return;
-  box.refuse_scene();
+  if (is_isokinetic()) conserve_energy(anew);
+  if (is_isokinetic() || !has_temperature()) return;
+  refuse_scene();
   temperature.begin_run(anew);
   note_friction();
-  if (words.damp > 0.0) {
-    refuse_bodies();
-    tell_freedoms();
-  }
+  if (words.damp > 0.0) refuse_bodies();
+  temperature.tell_freedoms(words.damp > 0.0 ? "thermostat" : "barostat");
   if (words.is_random()) {
     const double ratio = 0.5 * std::fabs(h) / words.damp, faster = ratio / std::tanh(ratio);
     if (words.damp < 2.0 * std::fabs(h) && comm->me == 0)
@@ -163,14 +175,21 @@ void Bath::begin_run(bool anew, double h)
           "the motion may become unstable",
           words.damp, FEWEST_STEPS);
   }
-  box.begin_run(anew, h);
+  if (!moves_box()) return;
+  if (temperature.freedoms[TRANSLATION] < 1.0)
+    error->all(FLERR,
+               "Fix gear/quat: constant pressure requires more than one body that is free to move");
+  if (update->nsteps > 0 || anew) find_target(update->ntimestep, h);
+  if (anew) refer_to_box(h);
+  correction = Upper();    // forces are evaluated in the corrected box
+  request_virial();
 }
 
 void Bath::refuse_bodies() const
 {
   tagint partly = 0;    // space-frame components of a torque are no part of the rotational energy
   for (int ibody = 0; domain->dimension == 3 && ibody < bodies.nowned(); ++ibody) {
-    const Body &body = bodies.body_at(ibody);
+    const Body &body = bodies.body[ibody];
     const Mask off = body.off & Temperature::NO_TORQUE;
     if (off && off != Temperature::NO_TORQUE && body.rigid.rotational_freedoms() > 0)
       partly = body.id;
@@ -183,26 +202,13 @@ void Bath::refuse_bodies() const
                "fix without this keyword for such bodies",
                words.keyword(), partly);
   if (bodies.number() == 0) return;
-  if (!temperature.has_translation() && temperature.freedoms[ROTATION] == 0.0)
-    error->all(FLERR,
-               "Fix gear/quat {}: keywords force and torque turn off all degrees of freedom of "
-               "the bodies, so they have no temperature",
-               words.keyword());
-  if (temperature.freedoms[TRANSLATION] < 0.0)
-    error->all(FLERR,
-               "Fix gear/quat {}: fix_modify extra/dof subtracts more degrees of freedom of "
-               "translation than the bodies have",
-               words.keyword());
-}
-
-void Bath::tell_freedoms()
-{
-  temperature.tell_once(
-      told,
-      fmt::format("thermostat of {:.0f} degrees of freedom of translation{} and {:.0f} of "
-                  "rotation",
-                  temperature.freedoms[TRANSLATION], temperature.description(),
-                  temperature.freedoms[ROTATION]));
+  if (temperature.freedoms[TRANSLATION] < 0.0 ||
+      (!temperature.has_translation() && temperature.freedoms[ROTATION] == 0.0))
+    error->all(
+        FLERR,
+        "Fix gear/quat {}: keywords force and torque or fix_modify extra/dof leave the bodies "
+        "no degrees of freedom, so they have no temperature",
+        words.keyword());
 }
 
 /// Targets, damping times and degrees of freedom.
@@ -211,13 +217,15 @@ std::vector<double> Bath::setting() const
   const auto &line = temperature.line;
   std::vector<double> found = {line.kt, line.kt_step, temperature.freedoms[TRANSLATION],
                                temperature.freedoms[ROTATION], words.damp};
-  box.add_setting(found);
+  for (int k = 0; k < Upper::SIZE; ++k)
+    if (asked.on[k])
+      found.insert(found.end(), {present_target[k], target_rate[k], asked.period[k]});
   return found;
 }
 
 const char *Bath::reason_to_start_anew() const
 {
-  if (isokinetic.acts() || !acts()) return nullptr;
+  if (is_isokinetic() || !acts()) return nullptr;
   const auto now = setting();
   const auto same = [](double a, double b) {
     return std::fabs(a - b) <= ROUNDING * (std::fabs(a) + std::fabs(b));
@@ -239,9 +247,9 @@ void Bath::note_friction()
 
 void Bath::share_friction()
 {
-  of_all = isokinetic.acts() ? isokinetic.multipliers()
-                             : Multipliers{xi[TRANSLATION], xi[words.separate ? ROTATION : 0]};
-  of_all.implicit = !isokinetic.acts();
+  of_all = is_isokinetic() ? alpha
+                           : Multipliers{xi[TRANSLATION], xi[words.separate ? ROTATION : 0]};
+  of_all.implicit = !is_isokinetic();
   std::copy_n(temperature.common, 3, of_all.common);
 }
 
@@ -249,7 +257,7 @@ Friction Bath::friction_of(int ibody) const
 {
   Friction found = friction();
   if (temperature.has_flow()) std::copy_n(temperature.flow_at(ibody).data(), 3, found.common);
-  if (bodies.body_at(ibody).off == 0) return found;
+  if (bodies.body[ibody].off == 0) return found;
   for (int k = 0; k < 3; ++k)
     if (!temperature.has(ibody, TRANSLATION, k)) found.release(k);
   if (!temperature.has(ibody, ROTATION)) found.rotation = 0.0;
@@ -258,8 +266,8 @@ Friction Bath::friction_of(int ibody) const
 
 void Bath::sum_present()
 {
-  if (isokinetic.acts())
-    isokinetic.sum_present();
+  if (is_isokinetic())
+    find_multipliers();
   else if (acts())
     temperature.sum_present();
 }
@@ -268,13 +276,13 @@ void Bath::measure()
 {
   sum_present();
   note_friction();
-  box.measure(of_all);
+  measure_box();
 }
 
 Load Bath::acting(int ibody) const
 {
   if (!acts()) return bodies.acting(ibody);
-  return damped_load(bodies.rigid_of(ibody), box.scaled(bodies.state_of(ibody)),
+  return damped_load(bodies.body[ibody].rigid, scaled(bodies.state[ibody]),
                      scaled(bodies.acting(ibody)), friction_of(ibody));
 }
 
@@ -282,31 +290,25 @@ Load Bath::acting(int ibody) const
    a step
 ------------------------------------------------------------------------- */
 
-template <class Act> void Bath::for_moved(Act act)
-{
-  for (const auto *list : {&bodies.points, &bodies.tops})
-    for (const int ibody : *list) act(ibody);
-}
-
 void Bath::take_random_half(const Integrator &integrator, int half)
 {
   if (!words.is_random()) return;
   temperature.aim(update->ntimestep);
   const RandomStep step(0.5 * integrator.step(), words.damp, temperature.line.kt);
   const auto place = [&](int ibody) {
-    integrator.set_velocities(bodies.rigid_of(ibody), box.scaled(bodies.state_of(ibody)),
-                              acting(ibody), bodies.history(ibody));
+    integrator.set_velocities(bodies.body[ibody].rigid, scaled(bodies.state[ibody]), acting(ibody),
+                              bodies.history(ibody));
   };
   const bool at_once = !acts();    // otherwise accelerations depend on velocities of all
-  for_moved([&](int ibody) {
-    const Body &body = bodies.body_at(ibody);
+  bodies.for_moved([&](int ibody) {
+    const Body &body = bodies.body[ibody];
     const bool turns = temperature.has(ibody, ROTATION);
     std::array<bool, 6> changes;
     for (int k = 0; k < 3; ++k) {
       changes[k] = temperature.has(ibody, TRANSLATION, k);
       changes[3 + k] = turns && body.rigid.turns_about(k, domain->dimension);
     }
-    BodyState &state = bodies.change_state(ibody);
+    BodyState &state = bodies.state[ibody];
     const auto normal = normal_numbers(words.seed, 2 * update->ntimestep + half, body.id);
     const auto flow = temperature.has_flow() ? temperature.flow_at(ibody) : std::array<double, 3>();
     for (int k = 0; k < 3; ++k) state.velocity[k] -= flow[k];
@@ -318,30 +320,46 @@ void Bath::take_random_half(const Integrator &integrator, int half)
   });
   if (at_once) return;
   measure();
-  box.seed_local(integrator.step(), 3, xi[OF_BOX]);
-  for_moved(place);
+  seed_box(integrator.step(), 3);
+  bodies.for_moved(place);
 }
 
+/// With a changing step, scalars have the coefficients of velocities.
 void Bath::predict(const Integrator &integrator)
 {
-  if (!box.moves()) return;
-  box.predict(integrator.step());
-  box.choose_coefficients(coefficients_of_heat, values_of_heat);
+  if (!moves_box()) return;
+  if (times) {
+    times->prepare(integrator.step());
+    const CorrectorCoefficients &of_times = times->coefficients();
+    cell.set_coefficients(of_times);
+    for (int j = 0; j < values_of_heat; ++j)
+      coefficients_of_heat[j] = 0.5 * (j + 1) * of_times.c[j + 1];
+  }
+  cell.predict();
+  refuse_box(cell.matrix());
+  show(cell.matrix(), cell.rate(integrator.step()));
 }
 
 void Bath::begin_correction(double h)
 {
-  begin_passes(h);
-  if (!isokinetic.acts()) return;
-  isokinetic.sum_present();
-  note_friction();
+  if (is_isokinetic()) {
+    find_multipliers();
+    note_friction();
+    return;
+  }
+  temperature.aim(update->ntimestep);
+  temperature.begin();
+  width = h;
+  find_target(update->ntimestep, width);
+  made = setting();
 }
 
 void Bath::add(const Integrator &integrator, const Block &block, const int *ids)
 {
   Velocities velocities = {};
   integrator.find_velocities(block, velocities);
-  if (box.moves()) box.to_space(velocities.linear);
+  const Lanes free[3] = {velocities.linear[0], velocities.linear[1], velocities.linear[2]};
+  if (moves_box()) box.matrix().times(free, velocities.linear);
   temperature.add(block.count, ids, velocities);
 }
 
@@ -358,11 +376,11 @@ void Bath::find_friction(const Integrator &integrator)
   const double free_common[3] = {temperature.common[0], temperature.common[1],
                                  temperature.common[2]};
   double change = HUGE_VAL;
-  box.measure(of_all);
+  measure_box();
   for (int round = 0; round < MOST_ROUNDS && change > ROUNDING_OF_FRICTION; ++round) {
     const Friction before = friction();
     const Upper left = (Upper::one() + before.damping.scaled(share)).inverse();
-    if (box.moves()) {
+    if (moves_box()) {
       temperature.tensor = (box.matrix() * left * to_scaled).congruent(free_tensor);
       temperature.twice[TRANSLATION] = temperature.tensor.trace();
       const Upper dragged = (Upper::one() + before.drag.scaled(share)).inverse();
@@ -372,98 +390,143 @@ void Bath::find_friction(const Integrator &integrator)
     }
     const double turning = before.implicit_torque(share);
     temperature.twice[ROTATION] = turning * turning * free[ROTATION];
-    for (int c = 0; c < (int) chains.size(); ++c) {
-      const bool is_known = same_bodies || c >= thermostats;
-      advance(c, is_known ? twice_of(c) : chains[c].foretold(h, values), h, values);
-    }
+    for (int c = 0; c < (int) chains.size(); ++c) advance(c, twice_of(c), h, values);
     note_friction();
-    box.pass(of_all, xi[OF_BOX], h);
+    if (moves_box()) cell.pass(drive(), xi[OF_BOX], h);
+    measure_box();
     change = std::fabs(h * (friction().rotation - before.rotation));
     for (int k = 0; k < Upper::SIZE; ++k)
       change = std::max(change, std::fabs(h * (friction().damping[k] - before.damping[k])));
   }
+  conclude(h);
 }
 
 void Bath::place(const Block &block, const int *ids, const double (*predicted)[3])
 {
-  for (int k = 0; k < block.count && box.moves(); ++k) {
+  for (int k = 0; k < block.count && moves_box(); ++k) {
     BodyState &state = *block.states[k];
+    double scaled_way[3], way[3];
+    for (int i = 0; i < 3; ++i) scaled_way[i] = state.center[i] - predicted[k][i];
+    box.matrix().times(scaled_way, way);
     double &work = block.last[k]->work;
-    for (int i = 0; i < 3; ++i)
-      work -= block.loads[k]->force[i] * (state.center[i] - predicted[k][i]);
-    work += box.work(bodies.load_of(ids[k]).force, predicted[k], state);
+    for (int i = 0; i < 3; ++i) work -= block.loads[k]->force[i] * scaled_way[i];
+    work += dot3(bodies.load[ids[k]].force, way);
     box.to_space(state);
   }
 }
 
 void Bath::end_correction(const Integrator &integrator)
 {
-  if (isokinetic.acts()) {
-    isokinetic.sum_present();
-    conclude(integrator.step());
-    for_moved([&](int ibody) {
-      double *rows = bodies.history(ibody);
-      isokinetic.scale(integrator, bodies.rigid_of(ibody), rows);
-      integrator.body_state(bodies.rigid_of(ibody), rows, bodies.change_state(ibody),
-                            bodies.change_frame(ibody));
-    });
-  }
-  box.end_step();
-}
-
-void Bath::begin_passes(double h)
-{
-  if (isokinetic.acts()) return;
-  same_bodies = temperature.is_counted();
-  temperature.aim(update->ntimestep);
-  temperature.begin();
-  box.begin_passes(h);
-  made = setting();
+  if (is_isokinetic()) scale(integrator);
+  if (!moves_box()) return;
+  show_box(false);
+  request_virial();
 }
 
 void Bath::conclude(double h)
 {
-  const double removed = isokinetic.acts() ? isokinetic.end_passes() : 0.0;
   for (auto &chain : chains) chain.conclude();
-  box.end_passes();
-  const double rate = isokinetic.acts() ? isokinetic.power() : box.rate_of_heat();
+  if (moves_box()) {
+    correction = cell.correction() * box.inverse_matrix();
+    local_error = cell.local_error() * box.inverse_matrix();
+    cell.finish();
+    note_rates(width);
+  }
+  const double rate = is_isokinetic() ? sums.power() : rate_of_heat();
   heat.advance(coefficients_of_heat.data(), values_of_heat, h, rate);
-  heat.add(removed);
 }
 
 /// The mass of the box changes with the degrees of freedom.
 void Bath::follow_changes(double h)
 {
-  if (isokinetic.acts() || !has_temperature() || temperature.is_counted()) return;
+  if (is_isokinetic() || !has_temperature() || temperature.is_counted()) return;
   std::vector<ChainTarget> before;
   for (int c = 0; c < thermostats; ++c) before.push_back(target_of(c, 0.0, h));
-  const double of_box = box.twice_kinetic();
+  const double of_box = twice_of_box();
   temperature.count();
   temperature.sum_present();
   made = setting();
-  for (int c = 0; c < thermostats; ++c)
-    chains[c].join(before[c], target_of(c, 0.0, h), twice_of(c));
-  heat.add(0.5 * (of_box - box.twice_kinetic()));
+  for (int c = 0; c < thermostats; ++c) chains[c].join(before[c], target_of(c, 0.0, h));
+  heat.add(0.5 * (of_box - twice_of_box()));
 }
 
 void Bath::keep()
 {
   kept = chains;
   kept_heat = heat;
-  box.keep();
+  kept_cell = cell;
 }
 
 void Bath::put_back()
 {
   chains = kept;
   heat = kept_heat;
-  box.put_back();
+  cell = kept_cell;
+  if (moves_box()) box.set(cell.matrix());
 }
 
 void Bath::rescale(double ratio)
 {
   heat.rescale(ratio, values_of_heat);
-  box.rescale(ratio);
+  cell.rescale(ratio);
+  width *= ratio;
+}
+
+/* ----------------------------------------------------------------------
+   keyword isokinetic
+------------------------------------------------------------------------- */
+
+/// From the present states and loads.
+void Bath::find_multipliers()
+{
+  constexpr size_t N = sizeof(KineticSums) / sizeof(double);
+  KineticSums here;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    here.add(bodies.body[ibody].rigid, bodies.load[ibody], bodies.state[ibody]);
+  reduce(MPI_SUM, &here.force_power, &sums.force_power, N, world);
+  alpha = multipliers(args.isokinetic, sums);
+}
+
+/// Without histories, the present kinetic energy becomes the conserved one.  Without kinetic energy
+/// the multiplier is undefined: NOTHING is rounding, relative to the whole.
+void Bath::conserve_energy(bool anew)
+{
+  constexpr double NOTHING = 1.0e-24;
+  find_multipliers();
+  int turns = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    if (bodies.body[ibody].rigid.rotational_freedoms() > 0) turns = 1;
+  turns = over_ranks(MPI_MAX, turns, world);
+  const double least = NOTHING * (sums.translation + sums.rotation);
+  if (least <= 0.0 ||
+      (args.isokinetic == Isokinetic::SEPARATE &&
+       (sums.translation <= least || (turns && sums.rotation <= least))))
+    error->all(FLERR,
+               "Fix gear/quat isokinetic: a kinetic energy of the bodies is zero and would stay so "
+               "(translation {:g}, rotation {:g}); give them velocities first",
+               0.5 * sums.translation * force->mvv2e, 0.5 * sums.rotation * force->mvv2e);
+  if (!anew && counted == bodies.number()) return;
+  conserved = sums;
+  counted = bodies.number();
+}
+
+/// With keyword rescale momenta are scaled to the conserved energy.
+void Bath::scale(const Integrator &integrator)
+{
+  find_multipliers();
+  if (counted != bodies.number()) {    // some were removed, with their energy
+    conserved = sums;
+    counted = bodies.number();
+  }
+  const Multipliers factor = scale_factors(args.isokinetic, conserved, sums);
+  conclude(integrator.step());
+  if (!args.rescale) return;
+  heat.add(0.5 * (sums.translation + sums.rotation - conserved.translation - conserved.rotation));
+  bodies.for_moved([&](int ibody) {
+    double *rows = bodies.history(ibody);
+    integrator.scale_momenta(bodies.body[ibody].rigid, factor, rows);
+    integrator.body_state(bodies.body[ibody].rigid, rows, bodies.state[ibody], bodies.frame[ibody]);
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -472,28 +535,9 @@ void Bath::rescale(double ratio)
 
 double Bath::longest_step() const
 {
-  const double longest = box.moves() ? box.period() / FEWEST_OF_BOX : HUGE_VAL;
+  const double longest = moves_box() ? period_of_box() / FEWEST_OF_BOX : HUGE_VAL;
   if (thermostats == 0) return longest;
   return std::min({longest, SAFE * STRONGEST / strongest_friction(), words.damp / FEWEST_STEPS});
-}
-
-/// The effect of the errors of the chains in this step on bodies in thermal motion: an error d of
-/// the friction causes the error h d v of a velocity v.  A cold body is insensitive to the friction,
-/// so its errors do not show whether the chains are accurate.
-std::array<double, 2> Bath::errors(bool as_energy, double h, int values) const
-{
-  const int terms = std::min(values, SECOND_MOST);
-  const double kt = temperature.line.kt;
-  double most = 0.0;
-  for (int c = 0; c < thermostats; ++c)
-    most = std::max(most, chains[c].left_out(target_of(c, 0.0, h), h, terms));
-  most *= (double) adams_moulton(terms);
-  double lightest = HUGE_VAL;
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-    lightest = std::min(lightest, bodies.rigid_of(ibody).mass);
-  return {as_energy ? std::fabs(h) * 3.0 * kt * most
-                    : h * h * std::sqrt(3.0 * kt / lightest) * most,
-          box.moves() ? box.error_of_step(as_energy, h) : 0.0};
 }
 
 std::vector<Rate> Bath::rates(double h) const
@@ -524,8 +568,8 @@ std::vector<double> Bath::rates_of_unknowns() const
 {
   std::vector<double> found;
   for (size_t c = 0; c < chains.size(); ++c) found.push_back(twice_of(c));
-  if (isokinetic.acts()) found.push_back(isokinetic.power());
-  if (box.moves()) found.push_back(box.rate_of_heat());
+  if (is_isokinetic()) found.push_back(sums.power());
+  if (moves_box()) found.push_back(rate_of_heat());
   return found;
 }
 
@@ -543,7 +587,11 @@ void Bath::begin_start(const StartNodes &nodes)
   for (size_t c = 0; c < chains.size(); ++c)
     held.push_back(chains[c].is_stiff(target_of(c, 0.0, nodes.h), twice_of(c), nodes.h,
                                       nodes.collocation.pairs()));
-  box.begin_start(nodes, xi[OF_BOX]);
+  if (moves_box()) {
+    const double s = nodes.spacing;
+    nodes.collocation.begin(box.matrix().m.data(), (box_rate * box.matrix()).scaled(s).m.data(),
+                            acceleration_of_box().scaled(s * s).m.data(), cell_at_nodes);
+  }
   at_nodes.clear();
   for (const double rate : rates_of_unknowns())
     nodes.collocation.begin(0.0, rate, at_nodes.emplace_back());
@@ -552,7 +600,7 @@ void Bath::begin_start(const StartNodes &nodes)
 void Bath::foretell(const StartNodes &nodes)
 {
   for (auto &one : at_nodes) nodes.collocation.foretell(one);
-  box.foretell(nodes);
+  if (moves_box()) nodes.collocation.foretell(cell_at_nodes);
 }
 
 void Bath::visit_node(const StartNodes &nodes, int node)
@@ -565,7 +613,11 @@ void Bath::visit_node(const StartNodes &nodes, int node)
               .flow(target_of(c, 0.0, nodes.h), drive_of(nodes, at_nodes[c]), nodes.spacing, node)
               .y[0];
   share_friction();
-  if (box.moves()) box.visit_node(nodes, node, of_all, xi[OF_BOX]);
+  if (moves_box()) {
+    const double s2 = nodes.spacing * nodes.spacing;
+    nodes.collocation.set_rates(node, acceleration_of_box().scaled(s2).m.data(), cell_at_nodes);
+    combine();
+  }
   const auto now = rates_of_unknowns();
   for (size_t k = 0; k < now.size(); ++k) nodes.collocation.set_rate(node, now[k], at_nodes[k]);
 }
@@ -573,20 +625,23 @@ void Bath::visit_node(const StartNodes &nodes, int node)
 void Bath::settle(const StartNodes &nodes, int pair)
 {
   for (auto &one : at_nodes) nodes.collocation.settle(pair, one);
-  box.settle(nodes, pair);
+  if (moves_box()) nodes.collocation.settle(pair, cell_at_nodes);
 }
 
 void Bath::seed(const StartNodes &nodes, int pairs, int values)
 {
   for (size_t c = 0; c < chains.size(); ++c)
-    chains[c].seed(nodes.collocation.rate_at_start(at_nodes[c]), pairs, nodes.spacing, values + 1);
+    chains[c].seed(nodes.collocation.rate_at_start(at_nodes[c]), pairs, nodes.spacing, values);
   if (at_nodes.size() > chains.size()) {
     double series[Collocation::MAX_NODES + 1];
     const int terms =
         nodes.collocation.series(at_nodes[chains.size()], pairs, nodes.spacing, series);
     heat.seed(series, terms, nodes.spacing, nodes.h, values_of_heat);
   }
-  if (box.moves()) box.seed(nodes, pairs);
+  if (!moves_box()) return;
+  double series[Upper::SIZE * TaylorSeries::MAX_TERMS];
+  nodes.collocation.expand(cell_at_nodes, pairs, series);
+  cell.seed(series, Collocation::terms_of(pairs), nodes.spacing, nodes.h);
 }
 
 void Bath::seed_local(double h, int terms)
@@ -596,8 +651,8 @@ void Bath::seed_local(double h, int terms)
     const double now = twice_of(c);
     chains[c].seed(&now, 0, 0.0, 1);
   }
-  box.seed_local(h, terms, xi[OF_BOX]);
-  const double series[2] = {0.0, h * (isokinetic.acts() ? isokinetic.power() : box.rate_of_heat())};
+  seed_box(h, terms);
+  const double series[2] = {0.0, h * (is_isokinetic() ? sums.power() : rate_of_heat())};
   heat.seed(series, 2, h, h, values_of_heat);
 }
 
@@ -607,18 +662,21 @@ void Bath::seed_local(double h, int terms)
 
 int Bath::elements() const
 {
-  if (isokinetic.acts()) return ELEMENTS_OF_ISOKINETIC;
-  return !has_temperature() ? 0 : ELEMENTS + (box.moves() ? (int) Barostat::ELEMENTS : 0);
+  if (is_isokinetic()) return ELEMENTS_OF_ISOKINETIC;
+  return !has_temperature() ? 0 : moves_box() ? ELEMENTS : PRESSURE;
 }
 
 bool Bath::extensive(int n) const
 {
-  return n == 0 || n == ELEMENTS + Barostat::E_BOX;    // HEAT or ENERGY
+  return n == 0 || n == E_BOX;    // HEAT or ENERGY
 }
 
 double Bath::energy() const
 {
-  double sum = 0.0, of_box = box.moves() ? box.energy(heat.value()) : 0.0;
+  double sum = 0.0, of_box = 0.0;
+  if (moves_box())
+    of_box = mean_of(target()) * box.volume() + heat.value() + 0.5 * twice_of_box() -
+        virial.contracted(correction);
   for (int c = 0; c < (int) chains.size(); ++c)
     (c < thermostats ? sum : of_box) += chains[c].energy(target_of(c, 0.0, 0.0));
   sum += over_ranks(MPI_SUM, randomly_taken, world);
@@ -627,8 +685,7 @@ double Bath::energy() const
 
 double Bath::element(int n)
 {
-  if (isokinetic.acts()) {
-    const Multipliers &alpha = isokinetic.multipliers();
+  if (is_isokinetic()) {
     return n == HEAT             ? heat.value() * force->mvv2e
         : n == ALPHA_TRANSLATION ? alpha.translation
                                  : alpha.rotation;
@@ -652,24 +709,23 @@ double Bath::element(int n)
       return xi[TRANSLATION];
     case XI_ROTATION:
       return xi[words.separate ? ROTATION : TRANSLATION];
-    case ELEMENTS + Barostat::XI_BOX:
-      return xi[OF_BOX];
     default:
-      if (n - ELEMENTS < Barostat::P_TARGET) temperature.sum_present();
-      return box.element(n - ELEMENTS);
+      return element_of_box(n);
   }
 }
 
 void Bath::fields(Fields &v)
 {
-  if (isokinetic.acts()) v(isokinetic, heat);
+  if (is_isokinetic()) v(counted, conserved, heat);
   if (words.is_random()) {
     double all = v.reads() ? 0.0 : over_ranks(MPI_SUM, randomly_taken, world);
     v(all);
     if (v.reads()) randomly_taken = comm->me == 0 ? all : 0.0;
   }
-  if (isokinetic.acts() || !acts()) return;
+  if (is_isokinetic() || !acts()) return;
   v(chains, made, temperature);
-  if (box.moves()) v(box, heat);
+  if (moves_box()) v(width, present_target, target_rate, correction, virial, box, cell, heat);
+  if (times) v(*times);
+  if (moves_box() && v.reads()) note_rates(width);
   if (v.reads()) note_friction();
 }

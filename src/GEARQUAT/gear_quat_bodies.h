@@ -80,27 +80,29 @@ class Bodies {
   std::vector<int> points;    ///< have no moments of inertia: their orientation is constant
   std::vector<int> fresh;     ///< were inserted in this step and have no history yet
 
-  const Body &body_at(int ibody) const { return body[ibody]; }
-  const RigidBody &rigid_of(int ibody) const { return body[ibody].rigid; }
-  const BodyState &state_of(int ibody) const { return state[ibody]; }
-  const BodyFrame &frame_of(int ibody) const { return frame[ibody]; }
-  const Load &load_of(int ibody) const { return load[ibody]; }
-  const Correction &last_of(int ibody) const { return last[ibody]; }
+  /// Calls act(ibody) for points and then for tops.
+  template <class Act> void for_moved(Act act) const
+  {
+    for (const auto *list : {&points, &tops})
+      for (const int ibody : *list) act(ibody);
+  }
+
+  // columns; code that moves bodies writes states and corrections, and frames or update_frames()
+
+  std::vector<Body> body;
+  std::vector<BodyState> state;
+  std::vector<Load> load;
+  std::vector<Correction> last;    ///< results of the last corrector
+  std::vector<BodyFrame> frame;    ///< of the states
+
   /// True if every rank has this body.
   bool is_large(int ibody) const { return !large.empty() && body[ibody].large; }
   /// The load without the components that are turned off for this body.
   Load acting(int ibody) const { return acting_load(load[ibody], body[ibody].off); }
-  /// The rotation matrix space -> body of the state, as of the last update of the frame.
-  const double *axes(int ibody) const { return frame[ibody].axes; }
   /// The history of a body; only for bodies that this rank moves.
   double *history(int ibody) { return rows.data() + (size_t) ibody * row_size; }
   const double *history(int ibody) const { return rows.data() + (size_t) ibody * row_size; }
 
-  // Code that moves bodies writes states and corrections, and frames or update_frames().
-
-  BodyState &change_state(int ibody) { return state[ibody]; }
-  BodyFrame &change_frame(int ibody) { return frame[ibody]; }
-  Correction &change_last(int ibody) { return last[ibody]; }
   void update_frame(int ibody);
   void update_frames(const std::vector<int> &list)
   {
@@ -122,21 +124,13 @@ class Bodies {
     std::vector<Load> loads;
   };
   Snapshot snapshot() const { return {state, load}; }
-  void put_back_states(const Snapshot &saved) { state = saved.states; }
-  void put_back_loads(const Snapshot &saved) { load = saved.loads; }
-
-  // whole columns, for sums over sites and ranks
-
-  const std::vector<BodyState> &states() const { return state; }
-  std::vector<BodyState> &change_states() { return state; }
-  std::vector<Load> &change_loads() { return load; }
+  void put_back(const Snapshot &saved) { state = saved.states, load = saved.loads; }
 
   // for ownership
 
   std::vector<int> large;         ///< copies and owned large bodies, in the same order on all ranks
   std::vector<int> ghost_tops;    ///< ghost bodies that rotate
 
-  Body &change_body(int ibody) { return body[ibody]; }
   /// Removes all bodies except owned bodies.
   void drop_copies() { resize(nmove = nown), large.clear(); }
   /// The index of another body, the last one: first owned bodies, then copies of large ones, then
@@ -174,12 +168,7 @@ class Bodies {
   bigint nbodies = 0;
   int nchanges = 0;    ///< of nbodies, insertions and removals
 
-  std::vector<Body> body;
-  std::vector<BodyState> state;
-  std::vector<Load> load;
-  std::vector<Correction> last;    ///< results of the last corrector
-  std::vector<BodyFrame> frame;    ///< of the states
-  std::vector<double> rows;        ///< histories
+  std::vector<double> rows;    ///< histories
 
   /// Calls act(column, its elements of a body).
   template <class Self, class Act> static void for_columns(Self &self, Part part, Act act)

@@ -151,31 +151,19 @@ std::array<int, 3> GearQuat::periods_of(imageint flags)
 
 /* ---------------------------------------------------------------------- */
 
-bool GearQuat::image_flag_overflow(const Domain *domain, const double *expected,
-                                   const double *unwrapped, double *turns)
+std::array<double, 3> GearQuat::image_flag_overflow(const Domain *domain, const double *expected,
+                                                    const double *unwrapped)
 {
   const double range = (double) IMGMASK + 1.0;    // number of boxes after which flags wrap around
   const double away[3] = {expected[0] - unwrapped[0], expected[1] - unwrapped[1],
                           expected[2] - unwrapped[2]};
   double boxes[3];
   to_periods(domain, away, boxes);
-  bool any = false;
-  for (int k = 0; k < 3; ++k) {
-    turns[k] = 0.0;
-    if (!(std::fabs(boxes[k]) > 0.5 * range) || !domain->periodicity[k]) continue;
-    turns[k] = range * std::round(boxes[k] / range);
-    any = true;
-  }
-  return any;
-}
-
-void GearQuat::undo_image_flag_overflow(const Domain *domain, const double *expected,
-                                        double *unwrapped)
-{
-  double turns[3], way[3];
-  if (!image_flag_overflow(domain, expected, unwrapped, turns)) return;
-  through(domain->h, turns, way);
-  for (int k = 0; k < 3; ++k) unwrapped[k] += way[k];
+  std::array<double, 3> turns = {};
+  for (int k = 0; k < 3; ++k)
+    if (std::fabs(boxes[k]) > 0.5 * range && domain->periodicity[k])
+      turns[k] = range * std::round(boxes[k] / range);
+  return turns;
 }
 
 void GearQuat::follow_box(const Domain *domain, const double *box_before, const double *position,

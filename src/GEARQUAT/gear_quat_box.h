@@ -83,15 +83,10 @@ class Box : protected Pointers {
 // LAMMPS counts the periodic box crossings of an atom in image flags of few bits.  The flags of an
 // atom that crosses more boxes than they can count wrap around.
 
-/// True if image flags have overflowed: turns (3) are the periods by which `unwrapped` (3),
-/// computed from the flags, must be shifted to be nearest to `expected` (3); 0 for flags without
-/// overflow.
-bool image_flag_overflow(const Domain *domain, const double *expected, const double *unwrapped,
-                         double *turns);
-
-/// Adds to `unwrapped` (3) the overflow of the image flags that brings it nearest to `expected`
-/// (3).  Without an overflow `unwrapped` does not change.
-void undo_image_flag_overflow(const Domain *domain, const double *expected, double *unwrapped);
+/// The periods by which a position `unwrapped`, computed from the flags, must be shifted to be nearest
+/// to `expected`; 0 unless the flags have overflowed.
+std::array<double, 3> image_flag_overflow(const Domain *domain, const double *expected,
+                                          const double *unwrapped);
 
 /// The image of an unwrapped position in another box: its coordinates in units of the periods stay.
 /// box_before: as Domain::h, followed by the corner of the box.

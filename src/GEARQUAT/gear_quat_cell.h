@@ -55,9 +55,6 @@ class CellHistory {
   static constexpr int WIDTH = Upper::SIZE;
   using Rows = std::array<double, WIDTH * MAX_VALUES>;
 
-  CellHistory() = default;
-  explicit CellHistory(const Scheme &of_bodies) { set_scheme(of_bodies); }
-
   void set_scheme(const Scheme &of_bodies)
   {
     n = of_bodies.values();

@@ -202,17 +202,6 @@ bool Chain::advance(const ChainTarget &target, double twice_kinetic, double h, i
   return found.substeps < GIVEN_UP;
 }
 
-double Chain::foretold(double h, int values) const
-{
-  double x[MOST_SUMS];
-  const int points = std::min(values, earlier(h));
-  for (int i = 0; i < points; ++i) x[i] = -ages[i] / h;
-  const ChainDrive drive = ChainDrive::through(points, x, sums.data());
-  double sum = 0.0;
-  for (int j = 0; j < points; ++j) sum += drive.c[j];
-  return sum;
-}
-
 void Chain::conclude()
 {
   begun = now;
@@ -245,30 +234,11 @@ void Chain::seed(const double *twice, int pairs, double spacing, int count)
   }
 }
 
-void Chain::join(const ChainTarget &before, const ChainTarget &target, double twice_kinetic)
+void Chain::join(const ChainTarget &before, const ChainTarget &target)
 {
   now[length] += moving(before, now) - moving(target, now);
   begun = now;
-  if (known == 0 || !(sums[0] > 0.0))
-    known = 1;
-  else
-    for (int k = 1; k < known; ++k) sums[k] *= twice_kinetic / sums[0];
-  sums[0] = twice_kinetic;
-  ages[0] = 0.0;
-}
-
-double Chain::left_out(const ChainTarget &target, double h, int values) const
-{
-  if (target.freedoms <= 0.0) return 0.0;
-  double factor = std::fabs(h) / (target.freedoms * target.kt * target.period * target.period);
-  double d[MOST_SUMS], found = 0.0;
-  std::copy_n(sums.begin(), known, d);
-  for (int j = 1; j < known && j <= values; ++j) {
-    for (int i = known - 1; i >= j; --i) d[i] = (d[i - 1] - d[i]) * h / (ages[i] - ages[i - j]);
-    factor *= j;
-    found = factor * std::fabs(d[j]);
-  }
-  return found;
+  known = 0;
 }
 
 double Chain::moving(const ChainTarget &target, const Variables &y) const

@@ -65,8 +65,7 @@ class Chain {
   static constexpr int LONGEST = 10;    ///< most variables xi
   static constexpr int MOST = LONGEST + 1;
   using Variables = std::array<double, MOST>;    ///< xi_1 ... xi_M, S
-  /// Number of stored sums 2K: for the polynomial, and two more for its error.
-  static constexpr int MOST_SUMS = MOST_ROWS + 2;
+  static constexpr int MOST_SUMS = MOST_ROWS;    ///< stored sums 2K, for the polynomial
   /// A chain with STIFF sub-steps per step is stiff; beyond GIVEN_UP the solution is abandoned.
   static constexpr int STIFF = 4, GIVEN_UP = 200000;
   static constexpr double SETTLING = 10.0;    ///< steps until a stiff chain varies slowly
@@ -105,9 +104,6 @@ class Chain {
   /// fast to be followed.
   bool advance(const ChainTarget &target, double twice_kinetic, double h, int values);
 
-  /// 2K at the end of a step of h, extrapolated from earlier sums.
-  double foretold(double h, int values) const;
-
   /// Completes the step: the 2K of its last pass becomes the first of the earlier sums.
   void conclude();
 
@@ -117,14 +113,9 @@ class Chain {
   /// difference is zero.
   void seed(const double *twice, int pairs, double spacing, int count);
 
-  /// For a discontinuity of 2K, when bodies were inserted or removed.  E and all xi do not change, and
-  /// earlier sums are scaled like the last sum.
-  void join(const ChainTarget &before, const ChainTarget &target, double twice_kinetic);
-
-  /// The leading term in the rate of the friction that a polynomial through 2K at `values` times
-  /// does not represent, with powers of h (1/time): h^(j+1) (2K)^(j)/(g kT tau^2) for j = values;
-  /// after conclude().
-  double left_out(const ChainTarget &target, double h, int values) const;
+  /// For a discontinuity of 2K, when bodies were inserted or removed.  E and all xi do not change,
+  /// and earlier sums are forgotten.
+  void join(const ChainTarget &before, const ChainTarget &target);
 
   /// Between steps.
   template <class V> void fields(V &v)

@@ -27,109 +27,6 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-void Minimization::init()
-{
-  if (!utils::strmatch(update->minimize_style, "^cg") &&
-      !utils::strmatch(update->minimize_style, "^sd"))
-    error->all(
-        FLERR,
-        "Fix gear/quat cannot be used with min_style {}, which does not let fixes take part; "
-        "use min_style cg or sd",
-        update->minimize_style);
-}
-
-void Minimization::begin()
-{
-  std::vector<ArmSums> sums(bodies.nhere());
-  for (const Site &site : sites) {
-    const double *d = site.arm_body;
-    add3(d, sums[site.body].arm);
-    for (int n = 0; n < 9; ++n) sums[site.body].products[n] += d[n / 3] * d[n % 3];
-  }
-  ownership.sum(sums);
-  tagint bad = 0;
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    stored(ibody).arms = sums[ibody];
-    const Load load = bodies.acting(ibody);
-    if (!std::isfinite(length(load.force) + length(load.torque_space)))
-      bad = bodies.body_at(ibody).id;
-  }
-  bad = over_ranks(MPI_MAX, bad, world);
-  if (bad)
-    error->all(FLERR,
-               "Fix gear/quat: the force or torque on body {} is not a number, so it cannot be "
-               "minimized; atoms must not be in the same place (see delete_atoms overlap)",
-               bad);
-}
-
-void Minimization::fit()
-{
-  std::vector<Displacements> sums(bodies.nhere());
-  for (const Site &site : sites) {
-    Displacements &sum = sums[site.body];
-    double found[3], expected[3], arm[3];
-    sites.unwrapped(site, found, expected);
-    to_space(bodies.axes(site.body), site.arm_body, arm);
-    for (int a = 0; a < 3; ++a) {
-      const double way = found[a] - expected[a];
-      sum.way[a] += way;
-      for (int b = 0; b < 3; ++b) sum.products[3 * a + b] += way * arm[b];
-    }
-  }
-  ownership.sum(sums);
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const Move move = nearest_move(arms_of(ibody), bodies.body_at(ibody).off, sums[ibody]);
-    BodyState &s = bodies.change_state(ibody);
-    double q[4];
-    w_times(move.rotation, s.q, q);
-    std::copy_n(q, 4, s.q);
-    add3(move.way, s.center);
-    bodies.update_frame(ibody);
-  }
-  ownership.spread_moved();
-  sites.place(false);
-}
-
-void Minimization::project(double **f)
-{
-  std::vector<Twist> twists(bodies.nhere());
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    Load load = bodies.load_of(ibody);
-    for (int k = 0; k < 3; ++k) {
-      load.force[k] /= force->ftm2v;
-      load.torque_space[k] /= force->ftm2v;
-    }
-    twists[ibody] = nearest_twist(arms_of(ibody), bodies.body_at(ibody).off, load);
-  }
-  ownership.spread(twists);
-  for (const Site &site : sites) {
-    const Twist &of_body = twists[site.body];
-    double arm[3];
-    to_space(bodies.axes(site.body), site.arm_body, arm);
-    cross3(of_body.turn, arm, f[site.atom]);
-    add3(of_body.way, f[site.atom]);
-  }
-}
-
-void Minimization::store()
-{
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const BodyState &s = bodies.state_of(ibody);
-    std::copy_n(s.center, 3, stored(ibody).center);
-    std::copy_n(s.q, 4, stored(ibody).q);
-  }
-}
-
-void Minimization::put_back()
-{
-  for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    BodyState &s = bodies.change_state(ibody);
-    std::copy_n(stored(ibody).center, 3, s.center);
-    std::copy_n(stored(ibody).q, 4, s.q);
-    bodies.update_frame(ibody);
-  }
-}
-
 /* ----------------------------------------------------------------------
    a box that another fix changes: before a run
 ------------------------------------------------------------------------- */
@@ -178,7 +75,7 @@ void DrivenBox::end_remap()
 {
   const double *before = ownership.box().data();
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const double *center = bodies.state_of(ibody).center;
+    const double *center = bodies.state[ibody].center;
     double moved[3], way[3];
     follow_box(domain, before, center, moved);
     for (int k = 0; k < 3; ++k) way[k] = moved[k] - center[k];
@@ -190,7 +87,7 @@ void DrivenBox::end_remap()
 /// Moves the centers of the state and of the history.
 void DrivenBox::move_center(int ibody, const double *way)
 {
-  double *center = bodies.change_state(ibody).center;
+  double *center = bodies.state[ibody].center;
   for (int k = 0; k < 3; ++k) center[k] += way[k];
   if (!step.started) return;
   double *row = bodies.history(ibody) + Scheme::POSITION;
@@ -215,7 +112,7 @@ void DrivenBox::follow()
   double change[6], way[3];
   for (int k = 0; k < 6; ++k) change[k] = domain->h[k] - box[k];
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    through(change, bodies.body_at(ibody).image.data(), way);
+    through(change, bodies.body[ibody].image.data(), way);
     move_center(ibody, way);
   }
   ownership.note_box();
@@ -227,19 +124,19 @@ void DrivenBox::pass_faces(int ibody, const double *images)
 {
   const double *rates = step.phase == Phase::BEGUN ? domain->h_rate : sites.rates_of_faces().data();
   double away[2][3], periods[3], velocity[3];
-  through(ownership.box().data(), bodies.body_at(ibody).image.data(), away[0]);
+  through(ownership.box().data(), bodies.body[ibody].image.data(), away[0]);
   through(domain->h, images, away[1]);
   for (int k = 0; k < 3; ++k) away[1][k] = away[0][k] - away[1][k];
   to_periods(domain, away[1], periods);
   for (double &number : periods) number = std::round(number);
   through(rates, periods, velocity);
-  add3(velocity, bodies.change_state(ibody).velocity);
+  add3(velocity, bodies.state[ibody].velocity);
   if (!step.started || ibody >= bodies.nmoved()) return;
   const Scheme &scheme = step.scheme();
   double *rows = bodies.history(ibody), *first = rows + scheme.width() + Scheme::POSITION;
   for (int k = 0; k < 3; ++k) first[k] += step.length() * velocity[k];
   if (!scheme.first()) return;
-  const double mass = bodies.rigid_of(ibody).mass;
+  const double mass = bodies.body[ibody].rigid.mass;
   for (int k = 0; k < 3; ++k) rows[Scheme::MOMENTUM + k] += mass * velocity[k];
 }
 
@@ -252,7 +149,7 @@ void DrivenBox::follow_images()
     const int owner = ownership.owner_of(ibody);
     const auto image = sites.image_of({owner, ibody, {}});
     std::copy_n(image.begin(), 3, found[ibody].force);
-    const bool passes = domain->deform_vremap && !bodies.body_at(ibody).fresh &&
+    const bool passes = domain->deform_vremap && !bodies.body[ibody].fresh &&
         (atom->mask[owner] & domain->deform_groupbit);
     found[ibody].torque_space[0] = passes;
   }
@@ -260,14 +157,14 @@ void DrivenBox::follow_images()
   ownership.spread(found);
   for (int ibody = 0; ibody < bodies.nhere(); ++ibody) {
     if (found[ibody].torque_space[0] != 0.0) pass_faces(ibody, found[ibody].force);
-    std::copy_n(found[ibody].force, 3, bodies.change_body(ibody).image.begin());
+    std::copy_n(found[ibody].force, 3, bodies.body[ibody].image.begin());
   }
 }
 
 void DrivenBox::note_images()
 {
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    bodies.change_body(ibody).image = sites.image_of({ownership.owner_of(ibody), ibody, {}});
+    bodies.body[ibody].image = sites.image_of({ownership.owner_of(ibody), ibody, {}});
 }
 
 /// A moving box that another command has changed begins again.

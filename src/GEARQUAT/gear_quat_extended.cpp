@@ -25,7 +25,7 @@ using namespace GearQuat;
 
 static constexpr double SAME = 1.0e-11;
 
-Extended::Extended(LAMMPS *lmp, const Scheme &scheme) : Pointers(lmp), scheme(scheme)
+Extended::Extended(LAMMPS *lmp) : Pointers(lmp)
 {
   find_atom_styles();
 }
@@ -230,31 +230,30 @@ void Extended::list(int i, int body)
   if (records[i].shape() == TRIANGLE) find_corners(sites.back());
 }
 
-Extended::Pose Extended::pose(const Record &record, int i, const BodyState &state) const
+Extended::Pose Extended::pose(const Record &record, int i, const Bodies &bodies, int ibody) const
 {
   Pose made;
-  double a[9], own[9];
-  rotation_matrix(state.q, scheme.norm2(state.q), a);
-  to_space(a, state.omega_body, made.omega);
-  site_orientation(state.q, record.relative, made.q);
+  double own[9];
+  std::copy_n(bodies.frame[ibody].omega_space, 3, made.omega);
+  site_orientation(bodies.state[ibody].q, record.relative, made.q);
   rotation_matrix(made.q, 1.0, own);
   own_angular_momentum(record.moments, own, made.omega, made.momentum);
   if (domain->dimension == 2) made.momentum[0] = made.momentum[1] = 0.0;
   std::fill_n(made.mu, 3, 0.0);
   if (record.dipole()) {    // with the length given by the atom style
-    to_space(a, record.mu_body, made.mu);
+    to_space(bodies.frame[ibody].axes, record.mu_body, made.mu);
     const double factor = atom->mu[i][3] / length(made.mu);
     for (double &component : made.mu) component *= factor;
   }
   return made;
 }
 
-void Extended::place(const std::vector<BodyState> &states, bool orientations, bool rates) const
+void Extended::place(const Bodies &bodies, bool orientations, bool rates) const
 {
   for (const Site &site : sites) {
     const int i = site.atom;
     const Record &record = records[i];
-    const Pose made = pose(record, i, states[site.body]);
+    const Pose made = pose(record, i, bodies, site.body);
     const int shape = record.shape();
     const bool by_momentum = shape == ELLIPSOID || shape == TRIANGLE;
     if (orientations) {
@@ -286,14 +285,14 @@ static bool same(const double *a, const double *b, int n)
   return difference <= SAME * largest;
 }
 
-bool Extended::match(int i, double mass, const BodyState &state) const
+bool Extended::match(int i, double mass, const Bodies &bodies, int ibody) const
 {
   const Own mine = own(i, mass);
   const Record record = has_records() ? records[i] : Record();
   if (2 * mine.shape + mine.dipole != record.kind) return false;
   if (record.kind == 0.0) return true;
 
-  const Pose made = pose(record, i, state);
+  const Pose made = pose(record, i, bodies, ibody);
   const double opposite[4] = {-made.q[0], -made.q[1], -made.q[2], -made.q[3]};
   return same(mine.moments, record.moments, 3) &&
       (mine.shape == POINT || (mine.shape == SPHERE && !atom->quat) || same(mine.q, made.q, 4) ||

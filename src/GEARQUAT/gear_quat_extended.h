@@ -18,7 +18,7 @@
 #ifndef LMP_GEAR_QUAT_EXTENDED_H
 #define LMP_GEAR_QUAT_EXTENDED_H
 
-#include "gear_quat_integrator.h"
+#include "gear_quat_bodies.h"
 #include "pointers.h"
 
 #include <vector>
@@ -33,8 +33,7 @@ namespace LAMMPS_NS::GearQuat {
 
 class Extended : protected Pointers {
  public:
-  Extended(LAMMPS *lmp, const Scheme &scheme);
-  void set_scheme(const Scheme &other) { scheme = other; }
+  explicit Extended(LAMMPS *lmp);
 
   /// Ends the run on all ranks, naming an atom, if one of `atoms` (local indices) cannot be moved;
   /// or naming the atom style, if it has data that this fix cannot move.
@@ -68,10 +67,10 @@ class Extended : protected Pointers {
   /// Lists the atom if it is more than a point.
   void list(int atom, int body);
   /// Sets orientations and dipoles, and rates (angular velocities or momenta) if requested.
-  void place(const std::vector<BodyState> &states, bool orientations, bool rates) const;
+  void place(const Bodies &bodies, bool orientations, bool rates) const;
   void add_torques(double **torque, std::vector<Load> &loads) const;
   /// True if sizes, orientations, dipoles and rates of these atoms match their bodies.
-  bool match(int atom, double mass, const BodyState &state) const;
+  bool match(int atom, double mass, const Bodies &bodies, int ibody) const;
 
   // per-atom records
 
@@ -121,7 +120,6 @@ class Extended : protected Pointers {
     double q[4], mu[3], omega[3], momentum[3];
   };
 
-  Scheme scheme;
   std::vector<Record> records;
 
   AtomVecEllipsoid *ellipsoids = nullptr;    ///< components of the atom style
@@ -133,7 +131,7 @@ class Extended : protected Pointers {
   int shape_of(int atom) const;
   int has_dipole(int atom) const;
   Own own(int atom, double mass) const;
-  Pose pose(const Record &record, int atom, const BodyState &state) const;
+  Pose pose(const Record &record, int atom, const Bodies &bodies, int ibody) const;
   void read_bonus(int atom, double mass, Own &mine) const;
   void find_corners(Site &site) const;
   void write_bonus(const Site &site, int shape, const double *q) const;

@@ -22,7 +22,7 @@ class Fields {
  public:
   using Numbers = std::vector<double>;
   static constexpr double MAGIC = 0x6765617271756174;    ///< "gearquat"
-  static constexpr double FORMAT = 12;
+  static constexpr double FORMAT = 13;
 
   /// To write.
   Fields() = default;

@@ -91,58 +91,38 @@ void Forces::look_at_fixes(const std::vector<const Fix *> &owners)
 void Forces::look_at_time()
 {
   save();
-  for (const bool of_fixes : {false, true}) {
-    if (!why.empty() || (of_fixes && post_force.empty())) continue;
-    const std::vector<double> now = forces_at(update->ntimestep, of_fixes);
-    double largest = 0.0;
-    for (const double one : now) largest = std::max(largest, std::fabs(one));
-    const double same = SAME * over_ranks(MPI_MAX, largest, world);
-    for (const bigint step : {EVERY_TIMES, AT_NO_TIMES}) {
-      if (!why.empty()) break;
-      const std::vector<double> then = forces_at(step, of_fixes);
-      const int differs =
-          !std::equal(now.begin(), now.end(), then.begin(), [same](double a, double b) {
-            return !(std::fabs(a - b) > same);
-          });
-      if (over_ranks(MPI_MAX, differs, world) && why.empty())
-        why = of_fixes ? "an external force depends on time"
-                       : fmt::format("forces depend on time (pair style {})", force->pair_style);
-    }
+  const std::vector<double> now = forces_at(update->ntimestep);
+  double largest = 0.0;
+  for (const double one : now) largest = std::max(largest, std::fabs(one));
+  const double same = SAME * over_ranks(MPI_MAX, largest, world);
+  int differs = 0;
+  for (const bigint step : {EVERY_TIMES, AT_NO_TIMES}) {
+    const std::vector<double> then = forces_at(step);
+    differs |= !std::equal(now.begin(), now.end(), then.begin(), [same](double a, double b) {
+      return !(std::fabs(a - b) > same);
+    });
   }
+  if (over_ranks(MPI_MAX, differs, world)) why = "forces depend on time";
+  for (const auto *one : modify->get_compute_list())
+    if (one->timeflag && one->invoked_flag)
+      why = "forces depend on energies or pressures, which LAMMPS computes only in steps";
   restore();
 }
 
-/// Forces and torques of the styles, or of the fixes, at another step, with energies and virials of
-/// the last step as if they were current; reason() reports if one of them reads these.
-std::vector<double> Forces::forces_at(bigint step, bool of_fixes)
+/// Forces and torques at another step, with energies and virials of the last step as if they were
+/// current.
+std::vector<double> Forces::forces_at(bigint step)
 {
   const bigint present = update->ntimestep;
   const size_t n = 3 * (size_t) atom->nlocal;
   update->ntimestep = step;
   for (auto *tally : steps_of_tallies()) *tally = step;
-  if (of_fixes) {
-    for (double **rows : {atom->f, atom->torque})
-      if (n && rows) std::fill_n(rows[0], n, 0.0);
-    for (auto *fix : post_force) {
-      fix->post_force(0);
-      note_reader(name_of(fix));
-    }
-  } else {
-    evaluate_styles(0, 0);
-    note_reader(fmt::format("pair style {}", force->pair_style));
-  }
+  evaluate();
   update->ntimestep = present;
   std::vector<double> found;
   for (double **rows : {atom->f, atom->torque})
     if (n && rows) found.insert(found.end(), rows[0], rows[0] + n);
   return found;
-}
-
-void Forces::note_reader(const std::string &reader)
-{
-  for (const auto *one : modify->get_compute_list())
-    if (why.empty() && one->timeflag && one->invoked_flag)
-      why = reader + " depends on energies or pressures, which LAMMPS computes only in steps";
 }
 
 /// The steps in which LAMMPS has tallied energies and virials.

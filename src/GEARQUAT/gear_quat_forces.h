@@ -64,11 +64,10 @@ class Forces : protected Pointers {
   void look_at_styles();
   void look_at_fixes(const std::vector<const Fix *> &owners);
   void look_at_time();
-  std::vector<double> forces_at(bigint step, bool of_fixes);
+  std::vector<double> forces_at(bigint step);
   void clear();
   void evaluate_styles(int eflag, int vflag);
   std::array<bigint *, 4> steps_of_tallies();
-  void note_reader(const std::string &reader);
 };
 
 /// r-RESPA with one step for all levels: the forces of a step are the sum over the levels.

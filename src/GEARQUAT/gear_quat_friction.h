@@ -55,21 +55,14 @@ struct KineticSums {
   double power() const { return force_power + torque_power; }
   template <class V> void fields(V &v) { v(force_power, torque_power, translation, rotation); }
 
-  /// torque_body: about the center of mass.
-  void add(const RigidBody &body, const double *force, const double *torque_body,
-           const double *velocity, const double *omega_body)
-  {
-    force_power += dot3(force, velocity);
-    torque_power += dot3(torque_body, omega_body);
-    translation += 2.0 * translational_energy(body, velocity);
-    rotation += 2.0 * rotational_energy(body, omega_body);
-  }
-
   void add(const RigidBody &body, const Load &load, const BodyState &state)
   {
     double torque_body[3];
     torque_along_axes(state.q, dot4(state.q, state.q), load, torque_body);
-    add(body, load.force, torque_body, state.velocity, state.omega_body);
+    force_power += dot3(load.force, state.velocity);
+    torque_power += dot3(torque_body, state.omega_body);
+    translation += 2.0 * translational_energy(body, state.velocity);
+    rotation += 2.0 * rotational_energy(body, state.omega_body);
   }
 };
 

@@ -3,7 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-#include "gear_quat_given_bodies.h"
+#include "gear_quat_assembly.h"
 
 #include "gear_quat_ranks.h"
 #include "gear_quat_shapes.h"

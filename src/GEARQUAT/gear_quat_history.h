@@ -16,10 +16,7 @@
    Corrector coefficients: after prediction the residual r of the differential equation is fed back
    into every row, y_j += c_j r, with
      first-order equation   r = h y' - y_1           c_1 = 1
-     second-order equation  r = h^2/2 y'' - y_2      c_2 = 1
-
-   Kinematics reads pose and velocities of a body from the rows of its history, before or after a
-   correction, and writes velocities into them. gear_quat_integrator.h has the evolution in time. */
+     second-order equation  r = h^2/2 y'' - y_2      c_2 = 1 */
 
 #ifndef GEAR_QUAT_HISTORY_H
 #define GEAR_QUAT_HISTORY_H
@@ -291,106 +288,6 @@ class ScalarHistory {
 
  private:
   Rows rows = {};
-};
-
-/* ---------------------------------------------------------------------- */
-
-/// Formulation momentum: the velocities and the frame of a body, or of several side by side.  rates:
-/// h x' and h L, along the axes of space.
-template <class T>
-GEAR_QUAT_INLINE void velocities_of_rows(const T *inertia, const T *rates, const T *q, double per_h,
-                                         T *velocity, T *omega_body, T *axes, T *omega_space)
-{
-  T per_inertia[3], along[3];
-  rotation_matrix(q, dot4(q, q), axes);
-  inverse_moments(inertia, per_inertia);
-  to_body(axes, rates + 3, along);
-#pragma GCC unroll 3
-  for (int i = 0; i < 3; ++i) {
-    velocity[i] = rates[i] * per_h;
-    omega_body[i] = per_h * per_inertia[i] * along[i];
-  }
-  to_space(axes, omega_body, omega_space);
-}
-
-class Kinematics {
- public:
-  /// h: the time step, not zero.
-  Kinematics(const Scheme &scheme, double h) : scheme(scheme), h(h), per_h(1.0 / h) {}
-
-  double step() const { return h; }
-  /// Another step; histories have to be rescaled with it.
-  void set_step(double step)
-  {
-    h = step;
-    per_h = 1.0 / step;
-  }
-
-  /// Pose and velocities.
-  BodyState body_state(const RigidBody &body, const double *rows) const
-  {
-    BodyState state;
-    BodyFrame frame;
-    body_state(body, rows, state, frame);
-    return state;
-  }
-
-  /// Pose and velocities, and the frame of this state.
-  void body_state(const RigidBody &body, const double *rows, BodyState &state,
-                  BodyFrame &frame) const
-  {
-    if (!scheme.momentum()) return find_state(body, rows, state, frame);
-    copy(rows + Scheme::POSITION, 3, state.center);
-    copy(rows + Scheme::SECOND_QUATERNION, 4, state.q);
-    velocities_of_rows(body.inertia, rows + Scheme::SECOND_WIDTH, state.q, per_h, state.velocity,
-                       state.omega_body, frame.axes, frame.omega_space);
-  }
-
-  /// Position and velocity alone.
-  void center_state(const RigidBody &body, const double *rows, BodyState &state) const
-  {
-    const double *rates = rows + scheme.width();
-    copy(rows + Scheme::POSITION, 3, state.center);
-    for (int i = 0; i < 3; ++i)
-      state.velocity[i] = scheme.first() ? rows[Scheme::MOMENTUM + i] / body.mass
-                                         : rates[Scheme::POSITION + i] * per_h;
-  }
-
-  /// Formulation momentum: velocities of the state into a history of the same pose.  With velocity
-  /// Verlet also the accelerations, which may depend on velocities by a friction.  load: at this pose.
-  void set_velocities(const RigidBody &body, const BodyState &state, const Load &load,
-                      double *rows) const;
-
-  /// d(|q|^2/2)/dt from the history; it should vanish.
-  double radial_rate(const double *rows) const
-  {
-    const double *q = rows + scheme.quaternion();
-    return scheme.momentum() ? 0.0 : dot4(q, q + scheme.width()) / h;
-  }
-
-  /// The rotation matrix A of the orientation in a history.
-  std::array<double, 9> axes_of(const double *rows) const
-  {
-    std::array<double, 9> axes;
-    const double *q = rows + scheme.quaternion();
-    rotation_matrix(q, scheme.norm2(q), axes.data());
-    return axes;
-  }
-
- protected:
-  Scheme scheme;
-  double h, per_h;
-
-  static void copy(const double *from, int n, double *to)
-  {
-#pragma GCC unroll 4
-    for (int i = 0; i < n; ++i) to[i] = from[i];
-  }
-
- private:
-  /// Formulations first and second.
-  void find_state(const RigidBody &body, const double *rows, BodyState &state,
-                  BodyFrame &frame) const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -11,7 +11,7 @@ using namespace LAMMPS_NS::GearQuat;
    states
 ------------------------------------------------------------------------- */
 
-void Kinematics::set_velocities(const RigidBody &body, const BodyState &state, const Load &load,
+void Integrator::set_velocities(const RigidBody &body, const BodyState &state, const Load &load,
                                 double *rows) const
 {
   double momentum[3], *rates = rows + scheme.width(), *seconds = rates + scheme.width();
@@ -28,7 +28,7 @@ void Kinematics::set_velocities(const RigidBody &body, const BodyState &state, c
     std::fill_n(rows + (scheme.values() + 1) * scheme.width(), scheme.width(), 0.0);
 }
 
-void Kinematics::find_state(const RigidBody &body, const double *rows, BodyState &state,
+void Integrator::find_state(const RigidBody &body, const double *rows, BodyState &state,
                             BodyFrame &frame) const
 {
   const int quat = scheme.quaternion();

@@ -353,8 +353,8 @@ std::string default_cell(const Keyword &row)
                           other.value, other.word);
     return cell;
   }
-  return row.may_be_auto() ? "auto" : of_formulations(row, [&row](const Keyword::Range &range) {
-    return std::to_string(row.standard_of(range, false));
+  return row.may_be_auto() ? "auto" : of_formulations(row, [](const Keyword::Range &range) {
+    return std::to_string(range.standard);
   });
 }
 

@@ -10,7 +10,6 @@
 
 #include "gear_quat_ownership.h"
 
-#include "gear_quat_assembly.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
@@ -29,8 +28,8 @@ using namespace GearQuat;
 
 /* ---------------------------------------------------------------------- */
 
-Ownership::Ownership(LAMMPS *lmp, Fix *fix, Bodies &bodies, const Scheme &scheme) :
-    Pointers(lmp), fix(fix), bodies(bodies), records(lmp, scheme)
+Ownership::Ownership(LAMMPS *lmp, Fix *fix, Bodies &bodies) :
+    Pointers(lmp), fix(fix), bodies(bodies), records(lmp)
 {
   if (atom->map_style == Atom::MAP_NONE)
     error->all(FLERR,
@@ -75,7 +74,7 @@ void Ownership::create(const std::vector<tagint> &ids, const GivenBodies &given)
 void Ownership::count()
 {
   bigint here[2] = {bodies.nowned(), 0};
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here[1] += bodies.body_at(ibody).natoms;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here[1] += bodies.body[ibody].natoms;
   const auto all = over_ranks(MPI_SUM, here, world);
   bodies.set_number(all[0]);
   natoms = all[1];
@@ -107,9 +106,9 @@ void Ownership::add(const std::vector<tagint> &ids, const GivenBodies &given, bo
   for (const auto &one : assemble(lmp, given, any_extended ? &records : nullptr, ids, act)) {
     if (one.owner_rank != comm->me) continue;
     const int ibody = add_owned(one.local);
-    bodies.change_body(ibody) = one.body;
-    bodies.change_body(ibody).fresh = fresh;
-    bodies.change_state(ibody) = one.state;
+    bodies.body[ibody] = one.body;
+    bodies.body[ibody].fresh = fresh;
+    bodies.state[ibody] = one.state;
   }
   count();
 }
@@ -132,28 +131,23 @@ void Ownership::recreate()
   double far = HUGE_VAL;
   for (int k = 0; k < domain->dimension; ++k)
     if (domain->periodicity[k]) far = std::min(far, PART * domain->prd[k]);
-  tagint here[2] = {0, 0};    // bodies that are torn, or changed with the box
+  tagint changed = 0;
   for (int i = 0; i < atom->nlocal; ++i) {
     const double further = length(assigned[i].arm) - before[i];
-    if (further > far) here[0] = ids[i];
-    if (!same_box && std::fabs(further) > SAME_SHAPE * before[i] + few) here[1] = ids[i];
+    if (further > far || (!same_box && std::fabs(further) > SAME_SHAPE * before[i] + few))
+      changed = ids[i];
   }
-  const auto all = over_ranks(MPI_MAX, here, world);
-  if (all[0])
+  changed = over_ranks(MPI_MAX, changed, world);
+  if (changed)
     error->all(
         FLERR,
-        "Fix gear/quat: some atoms of body {} are displaced from the others by whole periods of "
-        "the box; image flags of a body's atoms have to change together (set image, read_dump or "
-        "rerun with ix iy iz), or define the fix after they have changed",
-        all[0]);
-  if (all[1])
-    error->all(
-        FLERR,
-        "Fix gear/quat: the box has changed, and body {} has another shape than before: change_box "
-        "with remap moves each atom by itself, and without remap it tears a body that lies across "
-        "faces; change the box with fix deform, which moves bodies as a whole, move the body "
-        "inside before, or, to keep this shape, define the fix after the change",
-        all[1]);
+        "Fix gear/quat: body {} has another shape than before: image flags of its atoms have to "
+        "change "
+        "together (set image, read_dump or rerun with ix iy iz), and change_box moves each atom by "
+        "itself, while fix deform moves bodies as a whole; to keep this shape, define the fix "
+        "after "
+        "the change",
+        changed);
 }
 
 bool Ownership::resume(const std::vector<const double *> &packed, bool with_extended, int group)
@@ -169,7 +163,7 @@ bool Ownership::resume(const std::vector<const double *> &packed, bool with_exte
     Assigned &one = assigned[i];
     if ((one.id == 0) != (ids[i] == 0)) differs = 1;
     one.id = ids[i];
-    if (one.owned >= 0) bodies.change_body(one.owned).id = ids[i];
+    if (one.owned >= 0) bodies.body[one.owned].id = ids[i];
   }
   count();
   const bool whole = !count_atoms().broken;
@@ -252,7 +246,7 @@ Comparison Ownership::count_atoms(int groupbit) const
       count.in_group += (atom->mask[i] & groupbit) ? 1 : 0;
       count.own_freedoms += records.freedoms(i);
       if (owned_by(i) < 0) continue;
-      const Body &mine = bodies.body_at(owned_by(i));
+      const Body &mine = bodies.body[owned_by(i)];
       count.had = mine.natoms;
       count.freedoms = mine.rigid.freedoms(domain->dimension);
       owns[part] = 1;
@@ -373,7 +367,7 @@ void Ownership::find_bodies()
 bool Ownership::all_found()
 {
   bigint here[5] = {bodies.nowned(), 0, 0, (bigint) unseen.size(), 0};
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here[1] += bodies.body_at(ibody).natoms;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here[1] += bodies.body[ibody].natoms;
   for (int i = 0; i < atom->nlocal; ++i) {
     here[2] += in_body(i);
     here[4] += index[i] >= bodies.nmoved();
@@ -390,7 +384,7 @@ bool Ownership::all_found()
 std::vector<tagint> Ownership::all_ids() const
 {
   std::vector<tagint> mine;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) mine.push_back(bodies.body_at(ibody).id);
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) mine.push_back(bodies.body[ibody].id);
   return gather_sorted(mine, world);
 }
 
@@ -398,7 +392,7 @@ bool Ownership::change_masks(const std::map<tagint, Mask> &masks)
 {
   int changed = 0;
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    Body &body = bodies.change_body(ibody);
+    Body &body = bodies.body[ibody];
     const auto place = masks.find(body.id);
     const Mask wanted = place == masks.end() ? 0 : place->second;
     if (body.off != wanted) changed = 1;
@@ -420,7 +414,7 @@ void Ownership::spread_states()
 void Ownership::spread_moved()
 {
   if (!any_ghosts) return;
-  spread(bodies.change_states());
+  spread(bodies.state);
   bodies.update_frames(bodies.ghost_tops);
 }
 
@@ -591,7 +585,7 @@ void Ownership::promote()
   const std::vector<tagint> all = gather_sorted(unseen, world);
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     if (std::binary_search(all.begin(), all.end(), atom->tag[owner_atom[ibody]]))
-      bodies.change_body(ibody).large = 1;
+      bodies.body[ibody].large = 1;
 }
 
 /// Adds large bodies of other ranks after the owned bodies.  Collective.
@@ -600,7 +594,7 @@ void Ownership::share_large()
   const int size = 1 + bodies.packed_size(Bodies::MOVING);
   std::vector<double> mine;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    if (!bodies.body_at(ibody).large) continue;
+    if (!bodies.body[ibody].large) continue;
     mine.resize(mine.size() + size);
     double *buf = &mine[mine.size() - size];
     buf[0] = ubuf(atom->tag[owner_atom[ibody]]).d;

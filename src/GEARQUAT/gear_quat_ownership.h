@@ -21,9 +21,9 @@
 #ifndef LMP_GEAR_QUAT_OWNERSHIP_H
 #define LMP_GEAR_QUAT_OWNERSHIP_H
 
+#include "gear_quat_assembly.h"
 #include "gear_quat_bodies.h"
 #include "gear_quat_extended.h"
-#include "gear_quat_given_bodies.h"
 #include "pointers.h"
 
 #include <array>
@@ -45,7 +45,7 @@ struct Comparison {
 
 class Ownership : protected Pointers {
  public:
-  Ownership(LAMMPS *lmp, Fix *fix, Bodies &bodies, const Scheme &scheme);
+  Ownership(LAMMPS *lmp, Fix *fix, Bodies &bodies);
 
   // atoms
 
@@ -64,7 +64,7 @@ class Ownership : protected Pointers {
   /// True if the mass of an atom has changed since its body was made from masses.
   bool has_other_mass(int atom) const
   {
-    return mass_of(atom) != assigned[atom].mass && !bodies.body_at(index[atom]).from_file;
+    return mass_of(atom) != assigned[atom].mass && !bodies.body[index[atom]].from_file;
   }
   /// label: of all owned atoms, followed by their ghosts, which receive the same.  Collective.
   void spread_labels(std::vector<double> &label) { send(Content::OF_ATOMS, label.data(), 1); }

@@ -3,7 +3,8 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* Before a run: what is refused, and the report about the simulation. */
+/* Before a run: what is refused, and the report about the simulation.  In it and at its end: the
+   table of rates, the limits of a step, and the end of a run in which a body has become unstable. */
 
 #include "gear_quat_ranks.h"
 #include "gear_quat_step.h"
@@ -48,16 +49,15 @@ static void refuse_steps(LAMMPS *lmp)
                       level + 1, steps[0], steps[level]);
 }
 
-void GearQuat::refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet,
-                            const Ownership &ownership)
+void GearQuat::refuse_scene(LAMMPS *lmp, const Scene &scene, const Fleet &fleet)
 {
   if (lmp->update->whichflag != 2) refuse_steps(lmp);
   const Atom *atom = lmp->atom;
   for (auto *other : lmp->modify->get_fix_list()) {
-    if (other == fix || !other->time_integrate) continue;
+    if (other == scene.fix || !other->time_integrate) continue;
     tagint shared = 0;
     for (int i = 0; i < atom->nlocal; ++i)
-      if (ownership.in_body(i) && fleet.moves(other, atom, i)) shared = atom->tag[i];
+      if (scene.ownership.in_body(i) && fleet.moves(other, atom, i)) shared = atom->tag[i];
     shared = over_ranks(MPI_MAX, shared, lmp->world);
     if (shared)
       lmp->error->all(FLERR,
@@ -77,26 +77,15 @@ namespace {
 
 constexpr double STILL = 0.0, MOVED_BY_OTHERS = -1.0;
 
-class Report : protected Pointers {
+class Report : protected Scene {
  public:
-  Report(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Bodies &bodies,
-         Ownership &ownership, const Sites &sites) :
-      Pointers(lmp),
-      fix(fix), args(args), bodies(bodies), ownership(ownership), sites(sites)
-  {
-  }
+  explicit Report(const Scene &scene) : Scene(scene) {}
   std::string effects() const;
   /// Warns of own pairs that interact; returns sentences about pairs, each with a line for the input
   /// script.
   std::string pairs(const Fleet &fleet) const;
 
  private:
-  const Fix *fix;
-  const Arguments &args;
-  const Bodies &bodies;
-  Ownership &ownership;
-  const Sites &sites;
-
   // bodies by their principal moments; moments are equal if they differ by less than 1e-7 of the
   // largest
   enum { POINT, LINEAR, SPHERICAL, SYMMETRIC, ASYMMETRIC, PLANAR, TOPS };
@@ -128,7 +117,7 @@ std::string Report::effects() const
   tagint sizes[2] = {-MAXTAGINT, 0};    // the fewest atoms of a body, negative, and the most
   here[BODIES] = bodies.nowned();
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const Body &body = bodies.body_at(ibody);
+    const Body &body = bodies.body[ibody];
     ++here[top_of(body.rigid)];
     here[FREEDOMS] += body.rigid.freedoms(domain->dimension);
     sizes[0] = std::max(sizes[0], -body.natoms);
@@ -287,7 +276,7 @@ bool Report::meets_itself() const
 {
   double extent = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    extent = std::max(extent, bodies.body_at(ibody).extent);
+    extent = std::max(extent, bodies.body[ibody].extent);
   const double largest = over_ranks(MPI_MAX, extent, world);
   for (int k = 0; k < 3; ++k)
     if (domain->periodicity[k] && domain->prd[k] < 2.0 * largest + neighbor->cutneighmax)
@@ -316,12 +305,136 @@ std::string Report::exclude_own() const
 
 }    // namespace
 
-void GearQuat::report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
-                            const Bodies &bodies, Ownership &ownership, const Sites &sites)
+void GearQuat::report_scene(LAMMPS *lmp, const Scene &scene, const Fleet &fleet)
 {
-  const Report report(lmp, fix, args, bodies, ownership, sites);
+  const Report report(scene);
   const std::string of_pairs = report.pairs(fleet);
-  if (!args.report) return;
+  if (!scene.args.report) return;
   const std::string text = report.effects() + of_pairs;
   if (lmp->comm->me == 0) utils::logmesg(lmp, text);
+}
+
+/* ----------------------------------------------------------------------
+   the table of rates
+------------------------------------------------------------------------- */
+
+std::string GearQuat::words_of(const Rate &rate)
+{
+  return fmt::format("{} {:.2g} in a step, and the method follows {:.2g}; {}", rate.what,
+                     rate.radians, rate.limit, rate.remedy);
+}
+
+/// The rows of bodies, for the present step.  edge: radians of vibrations in a step, infinite if
+/// unknown.  Collective.
+void Step::note_rates(double edge)
+{
+  rates.clear();
+  if (tolerance) return;
+  const bool noisy = noise_of_forces(lmp, ownership).noise != Noise::NONE;
+  if (noisy || !std::isfinite(edge)) edge = 0.0;
+  const double h = std::fabs(length());
+  const auto add = [&](const char *what, double radians, double limit, double advised) {
+    rates.push_back({what, radians, limit,
+                     fmt::format("use a time step of {:.4g} or shorter", h * advised / radians)});
+  };
+  double omega = 0.0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
+    omega = std::max(omega, GearQuat::length(bodies.state[ibody].omega_body));
+  omega = over_ranks(MPI_MAX, omega, world);
+  // free rotations are exact in formulation momentum, but the forces on them are not
+  constexpr double PART = 2.0 / 3.0, TURN = 0.5;
+  const double longest = longest_edge(scheme()), stable = fastest_oscillation(scheme());
+  add("the angle of vibrations is", edge, longest, PART * longest);
+  add("the angle by which the fastest body turns is", h * omega,
+      scheme().momentum() ? MotionLimits::TURN : stable, std::min(PART * stable, TURN));
+}
+
+/// The bath is first, because it also accelerates bodies.
+std::vector<Rate> Step::all_rates(double h) const
+{
+  std::vector<Rate> table = bath.rates(h);
+  table.insert(table.end(), rates.begin(), rates.end());
+  return table;
+}
+
+/// Rank 0 warns once of the first rate that is too large; others may have the same cause.
+void Step::warn_of_rates()
+{
+  if (tolerance) return;
+  for (const auto &rate : all_rates(length())) {
+    if (!(rate.part() > 1.0)) continue;
+    if (warned != rate.what && comm->me == 0)
+      error->warning(FLERR, "Fix gear/quat {}: {}", fix->id, words_of(rate));
+    warned = rate.what;
+    return;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   limits
+------------------------------------------------------------------------- */
+
+/// Ends the run if the load of a body is no number: atoms are at its positions; f: forces on them.
+void Step::watch_load(int ibody, double **f) const
+{
+  const Load &l = bodies.load[ibody];
+  if (!std::isfinite(GearQuat::length(l.force) + GearQuat::length(l.torque_space)))
+    stop(ibody, bodies.state[ibody], length(), f);
+}
+
+/// Ends the run on all ranks, called by the rank that owns the body (for a large one, by all of them
+/// together).  The message gives step, time, body, its motion and load, its atom with the largest
+/// force, and one remedy.  s: the resulting state, beyond the limits.
+void Step::stop(int ibody, const BodyState &s, double h, double **f) const
+{
+  double largest = -1.0;    // force on an atom; infinite if it is not a finite number
+  tagint worst = 0;
+  for (const Site &site : sites) {
+    if (site.body != ibody) continue;
+    const double size = GearQuat::length(f[site.atom]);
+    if (std::isfinite(size) && size <= largest) continue;
+    largest = std::isfinite(size) ? size : HUGE_VAL;
+    worst = atom->tag[site.atom];
+  }
+  const bool large = bodies.is_large(ibody);
+  if (large && over_ranks(MPI_MAX, largest, world) > largest) worst = 0;
+  if (large) worst = over_ranks(MPI_MAX, worst, world);
+  const std::string text = fmt::format(
+      "Fix gear/quat: blow-up in step {}, time {:g}: body {} {}; the largest force acts on its "
+      "atom {}; {}",
+      update->ntimestep, time_step.time_of(update->ntimestep), bodies.body[ibody].id,
+      what_happened(ibody, s, h), worst, remedy(ibody, h));
+  if (large) error->all(FLERR, text);
+  error->one(FLERR, text);
+}
+
+std::string Step::what_happened(int ibody, const BodyState &s, double h) const
+{
+  const Load &l = bodies.load[ibody];
+  const double push = GearQuat::length(l.force) / force->ftm2v;
+  const double twist = GearQuat::length(l.torque_space) / force->ftm2v;
+  if (!std::isfinite(push + twist)) return "meets a force or torque that is not a finite number";
+  return fmt::format(
+      "moves by {:g} and turns by {:g} radians in one step, under a force of {:g} and a torque of "
+      "{:g}",
+      GearQuat::length(s.velocity) * std::fabs(h), GearQuat::length(s.omega_body) * std::fabs(h),
+      push, twist);
+}
+
+std::string Step::remedy(int ibody, double h) const
+{
+  constexpr char APART[] = "begin with atoms farther apart, for example after minimize or a run "
+                           "with keywords tolerance and temp";
+  constexpr double OVERLAP = 100.0;    // times the limit: due to an overlap, and not to the step
+  const Load &l = bodies.load[ibody];
+  const double size = std::fabs(h);
+  if (!std::isfinite(GearQuat::length(l.force) + GearQuat::length(l.torque_space))) return APART;
+
+  for (const auto &rate : all_rates(h))
+    if (rate.part() > 1.0) return rate.part() < OVERLAP ? words_of(rate) : APART;
+  if (tolerance)
+    return fmt::format("use a smaller tolerance, a dtmax shorter than {:g}, and no dtmin", size);
+  return fmt::format("halve the time step, {:g}, until the run is stable; atoms that overlap have "
+                     "to begin farther apart",
+                     size);
 }

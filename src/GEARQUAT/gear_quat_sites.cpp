@@ -97,13 +97,13 @@ std::array<int, 3> Sites::image_of(const Site &site) const
 {
   const imageint flags = atom->image[site.atom];
   std::array<int, 3> periods = periods_of(flags);
-  double away[3] = {0.0, 0.0, 0.0}, arm[3], expected[3], turns[3];
+  double away[3] = {0.0, 0.0, 0.0}, arm[3], expected[3];
   domain->unmap(away, flags);
-  to_space(bodies.axes(site.body), site.arm_body, arm);
-  const double *center = bodies.state_of(site.body).center, *x = atom->x[site.atom];
+  to_space(bodies.frame[site.body].axes, site.arm_body, arm);
+  const double *center = bodies.state[site.body].center, *x = atom->x[site.atom];
   for (int k = 0; k < 3; ++k) expected[k] = center[k] + arm[k] - x[k];
-  if (image_flag_overflow(domain, expected, away, turns))
-    for (int k = 0; k < 3; ++k) periods[k] += (int) turns[k];
+  const auto turns = image_flag_overflow(domain, expected, away);
+  for (int k = 0; k < 3; ++k) periods[k] += (int) turns[k];
   return periods;
 }
 
@@ -111,34 +111,30 @@ std::array<int, 3> Sites::image_of(const Site &site) const
    positions and velocities
 ------------------------------------------------------------------------- */
 
-/// Computes the displacements of the images in the present box.  False if all images are zero.
-bool Sites::find_ways()
+/// Computes the displacements of the images in the present box.
+void Sites::find_ways()
 {
-  const auto is_home = [](const std::array<int, 3> &image) {
-    return image[0] == 0 && image[1] == 0 && image[2] == 0;
-  };
-  if (std::all_of(images.begin(), images.end(), is_home)) return false;
   ways.resize(images.size());
   for (size_t m = 0; m < images.size(); ++m) through(domain->h, images[m].data(), ways[m].data());
-  return true;
 }
 
-template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Sites::place_points()
+template <bool POSITIONS, bool VELOCITIES> void Sites::place_points()
 {
+  ++nplacements;
+  if (POSITIONS) find_ways();
   const auto *way = ways.data();
   const Site *const all = sites.data(), *site = all;
   double *const x = first_of(atom->x), *const v = first_of(atom->v);
   const int n = bodies.nhere();
   for (int ibody = 0; ibody < n; ++ibody) {
-    const BodyState &s = bodies.state_of(ibody);
-    const BodyFrame &frame = bodies.frame_of(ibody);
+    const BodyState &s = bodies.state[ibody];
+    const BodyFrame &frame = bodies.frame[ibody];
     const Site *const arms = all + first_arm[ibody], *const end = all + first[ibody + 1];
     for (; site != arms; ++site) {
       const size_t i = 3 * (size_t) site->atom;
 #pragma GCC unroll 3
       for (int k = 0; k < 3; ++k) {
-        if (POSITIONS) x[i + k] = s.center[k];
-        if (POSITIONS && WRAPPED) x[i + k] -= way[image[site - all]][k];
+        if (POSITIONS) x[i + k] = s.center[k] - way[image[site - all]][k];
         if (VELOCITIES) v[i + k] = s.velocity[k];
       }
     }
@@ -149,21 +145,11 @@ template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void Sites::place_point
       if (VELOCITIES) cross3(frame.omega_space, arm, spin);
 #pragma GCC unroll 3
       for (int k = 0; k < 3; ++k) {
-        if (POSITIONS) x[i + k] = s.center[k] + arm[k];
-        if (POSITIONS && WRAPPED) x[i + k] -= way[image[site - all]][k];
+        if (POSITIONS) x[i + k] = s.center[k] + arm[k] - way[image[site - all]][k];
         if (VELOCITIES) v[i + k] = s.velocity[k] + spin[k];
       }
     }
   }
-}
-
-template <bool POSITIONS, bool VELOCITIES> void Sites::place_points()
-{
-  ++nplacements;
-  if (POSITIONS && find_ways())
-    place_points<POSITIONS, VELOCITIES, true>();
-  else
-    place_points<POSITIONS, VELOCITIES, false>();
   if (VELOCITIES) {
     note_rates();
     if (domain->deform_vremap)
@@ -171,7 +157,7 @@ template <bool POSITIONS, bool VELOCITIES> void Sites::place_points()
   }
   if (VELOCITIES && atom->vest)
     for (const Site &site : sites) std::copy_n(atom->v[site.atom], 3, atom->vest[site.atom]);
-  if (!extended.sites.empty()) extended.place(bodies.states(), POSITIONS, VELOCITIES);
+  if (!extended.sites.empty()) extended.place(bodies, POSITIONS, VELOCITIES);
 }
 
 void Sites::place(bool velocities)
@@ -196,7 +182,7 @@ void Sites::advance_densities(double step)
 
 void Sites::place_extended()
 {
-  if (!extended.sites.empty()) extended.place(bodies.states(), true, true);
+  if (!extended.sites.empty()) extended.place(bodies, true, true);
 }
 
 void Sites::note_rates()
@@ -210,7 +196,7 @@ void Sites::note_rates()
 /// Adds the velocity of a site's image relative to the image of its body.
 void Sites::add_flow(const Site &site, double factor, double *velocity) const
 {
-  const auto &mine = images[image[&site - begin()]], &of_body = bodies.body_at(site.body).image;
+  const auto &mine = images[image[&site - begin()]], &of_body = bodies.body[site.body].image;
   if (mine == of_body || !(atom->mask[site.atom] & face_group)) return;
   double periods[3], flow[3];
   for (int k = 0; k < 3; ++k) periods[k] = factor * (of_body[k] - mine[k]);
@@ -234,11 +220,11 @@ void Sites::wrap(const Site &site, double *away) const
 Sites::Expected Sites::expected_position(const Site &site) const
 {
   const double box = std::max({domain->xprd, domain->yprd, domain->zprd});
-  const double *center = bodies.state_of(site.body).center;
+  const double *center = bodies.state[site.body].center;
   double arm[3], away[3];
   Expected x;
   wrap(site, away);
-  to_space(bodies.axes(site.body), site.arm_body, arm);
+  to_space(bodies.frame[site.body].axes, site.arm_body, arm);
   for (int k = 0; k < 3; ++k) x.value[k] = center[k] + arm[k] - away[k];
   x.size = box + std::sqrt(dot3(center, center) + dot3(away, away));
   return x;
@@ -246,8 +232,8 @@ Sites::Expected Sites::expected_position(const Site &site) const
 
 Sites::Expected Sites::expected_velocity(const Site &site) const
 {
-  const double *velocity = bodies.state_of(site.body).velocity;
-  const BodyFrame &frame = bodies.frame_of(site.body);
+  const double *velocity = bodies.state[site.body].velocity;
+  const BodyFrame &frame = bodies.frame[site.body];
   double arm[3], spin[3];
   Expected v;
   to_space(frame.axes, site.arm_body, arm);
@@ -257,17 +243,6 @@ Sites::Expected Sites::expected_velocity(const Site &site) const
   for (int k = 0; k < 3; ++k) v.value[k] = velocity[k] + spin[k] + flow[k];
   v.size = length(velocity) + length(spin) + length(flow);
   return v;
-}
-
-void Sites::unwrapped(const Site &site, double *found, double *expected) const
-{
-  const Expected there = expected_position(site);
-  double away[3];
-  wrap(site, away);
-  for (int k = 0; k < 3; ++k) {
-    expected[k] = there.value[k] + away[k];
-    found[k] = atom->x[site.atom][k] + away[k];
-  }
 }
 
 static bool near(const double *a, const Sites::Expected &expected)
@@ -310,7 +285,7 @@ bool Sites::any_changes() const
   for (const Site &site : sites) {
     const int i = site.atom;
     if (!is_there(site) || !is_as_fast(site) || ownership.has_other_mass(i) ||
-        !extended.match(i, ownership.mass_of(i), bodies.state_of(site.body)))
+        !extended.match(i, ownership.mass_of(i), bodies, site.body))
       here = 1;
   }
   return over_ranks(MPI_MAX, here, world) != 0;
@@ -331,7 +306,7 @@ void Sites::sum_over_sites(Start start, Add add, Finish finish) const
     for (; n < first_arm[ibody]; ++n) add(sum, sites[n], nullptr);
     for (; n < first[ibody + 1]; ++n) {
       double arm[3];
-      to_space(bodies.axes(ibody), sites[n].arm_body, arm);
+      to_space(bodies.frame[ibody].axes, sites[n].arm_body, arm);
       add(sum, sites[n], arm);
     }
     finish(ibody, sum);
@@ -341,7 +316,7 @@ void Sites::sum_over_sites(Start start, Add add, Finish finish) const
 void Sites::gather_loads(double **f, double **torque)
 {
   const double *const forces = first_of(f);
-  std::vector<Load> &loads = bodies.change_loads();
+  std::vector<Load> &loads = bodies.load;
   sum_over_sites(
       [](int) {
         return Load();
@@ -398,8 +373,8 @@ std::vector<std::array<double, 3>> Sites::centroids()
   std::vector<std::array<double, 3>> means(bodies.nhere());
   for (const Site &site : sites) {
     double arm[3];
-    to_space(bodies.axes(site.body), site.arm_body, arm);
-    for (int k = 0; k < 3; ++k) means[site.body][k] += arm[k] / bodies.body_at(site.body).natoms;
+    to_space(bodies.frame[site.body].axes, site.arm_body, arm);
+    for (int k = 0; k < 3; ++k) means[site.body][k] += arm[k] / bodies.body[site.body].natoms;
   }
   ownership.sum(means);
   ownership.spread(means);
@@ -412,20 +387,20 @@ void Sites::visit_constraint_forces(double **f, bool all, Turning turning,
   struct Acceleration {
     double linear[3], angular[3];    // in space
   };
-  ownership.spread(bodies.change_loads());
+  ownership.spread(bodies.load);
   std::vector<std::array<double, 3>> means;
   if (all) means = centroids();
   sum_over_sites(
       [this, turning](int ibody) {
-        const RigidBody &rigid = bodies.rigid_of(ibody);
-        const Load &load = bodies.load_of(ibody);
+        const RigidBody &rigid = bodies.body[ibody].rigid;
+        const Load &load = bodies.load[ibody];
         Acceleration acceleration = {};
         for (int k = 0; k < 3; ++k) acceleration.linear[k] = load.force[k] / rigid.mass;
         if (turning == Turning::NO) return acceleration;
         double torque_body[3], alpha_body[3];
-        to_body(bodies.axes(ibody), load.torque_space, torque_body);
-        angular_acceleration(rigid, torque_body, bodies.state_of(ibody).omega_body, alpha_body);
-        to_space(bodies.axes(ibody), alpha_body, acceleration.angular);
+        to_body(bodies.frame[ibody].axes, load.torque_space, torque_body);
+        angular_acceleration(rigid, torque_body, bodies.state[ibody].omega_body, alpha_body);
+        to_space(bodies.frame[ibody].axes, alpha_body, acceleration.angular);
         return acceleration;
       },
       [&](const Acceleration &acceleration, const Site &site, const double *arm) {
@@ -437,7 +412,7 @@ void Sites::visit_constraint_forces(double **f, bool all, Turning turning,
         double tangential[3], radial[3] = {0.0, 0.0, 0.0};
         cross3(acceleration.angular, arm_space, tangential);
         if (turning == Turning::YES) {
-          const double *omega_space = bodies.frame_of(site.body).omega_space;
+          const double *omega_space = bodies.frame[site.body].omega_space;
           double spin[3];
           cross3(omega_space, arm_space, spin);
           cross3(omega_space, spin, radial);

@@ -25,6 +25,8 @@
 
 namespace LAMMPS_NS::GearQuat {
 
+struct Arguments;
+
 /// An owned atom of a body; stays valid until atoms are exchanged.
 struct Site {
   int atom, body;
@@ -73,8 +75,6 @@ class Sites : protected Pointers {
   // site: one of this list
   Expected expected_position(const Site &site) const;
   Expected expected_velocity(const Site &site) const;
-  /// Unwrapped positions: the one of the atom, and the one computed from its body.
-  void unwrapped(const Site &site, double *found, double *expected) const;
   // True if position or velocity of the atom match its body, up to rounding of coordinates and
   // velocities, relative to box and body.
   bool is_there(const Site &site) const;
@@ -135,14 +135,29 @@ class Sites : protected Pointers {
 
   void sort();
   void wrap(const Site &site, double *away) const;
-  bool find_ways();
+  void find_ways();
   void add_flow(const Site &site, double factor, double *velocity) const;
   void note_rates();
   template <bool POSITIONS, bool VELOCITIES> void place_points();
-  template <bool POSITIONS, bool VELOCITIES, bool WRAPPED> void place_points();
   template <class Start, class Add, class Finish>
   void sum_over_sites(Start start, Add add, Finish finish) const;
   std::vector<std::array<double, 3>> centroids();
+};
+
+/// What the objects of a fix share.
+struct Scene : protected Pointers {
+  const Fix *const fix;
+  const Arguments &args;
+  Bodies &bodies;
+  Ownership &ownership;
+  Sites &sites;
+
+  Scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, Bodies &bodies, Ownership &ownership,
+        Sites &sites) :
+      Pointers(lmp),
+      fix(fix), args(args), bodies(bodies), ownership(ownership), sites(sites)
+  {
+  }
 };
 
 }    // namespace LAMMPS_NS::GearQuat

@@ -12,19 +12,6 @@
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
-BodyState GearQuat::kicked(const RigidBody &body, const BodyState &before, const Load &load,
-                           double h)
-{
-  BodyState s = before;
-  double omegadot_body[3];
-  angular_acceleration(body, before, dot4(s.q, s.q), load, omegadot_body);
-  for (int k = 0; k < 3; ++k) {
-    s.velocity[k] += h * load.force[k] / body.mass;
-    s.omega_body[k] += h * omegadot_body[k];
-  }
-  return s;
-}
-
 double GearQuat::fastest_oscillation(const Scheme &scheme)
 {
   constexpr int FEWEST = 3;    // values of the first column

@@ -34,14 +34,12 @@
 namespace LAMMPS_NS::GearQuat {
 
 /// No step can be right if a body turns by half a turn in it (the poses alone do not determine the
-/// direction of the turn), if it crosses the whole simulation box, if its quaternion is so far from
-/// unit length that unprojected sites are wrong by a factor of a hundred, or if its motion is not
-/// finite.  All these limits are far outside of the stable range, so only unstable runs end here:
+/// direction of the turn), if it crosses the whole simulation box, or if its motion is not finite.
+/// All these limits are far outside of the stable range, so only unstable runs end here:
 /// the quaternion of a free rotation is a harmonic motion with omega/2, half a turn is omega/2 h =
 /// 1.57, and all methods here are unstable beyond 1.42.
 struct MotionLimits {
   static constexpr double TURN = 3.14159265358979323846;    ///< radians in a step
-  static constexpr double NORM2 = 100.0;    ///< |q|^2 is less than this, and more than its inverse
 
   double speed2 = 0.0, rate2 = 0.0;
 
@@ -53,21 +51,11 @@ struct MotionLimits {
   }
 
   /// False for velocities that are beyond the limits or not finite.
-  bool keep_velocities(const BodyState &s) const
+  bool keep(const BodyState &s) const
   {
     return dot3(s.velocity, s.velocity) < speed2 && dot3(s.omega_body, s.omega_body) < rate2;
   }
-
-  /// Also tests |q|.  Of a corrected state: a predicted q does not have unit length.
-  bool keep(const BodyState &s) const
-  {
-    const double norm2 = dot4(s.q, s.q);
-    return keep_velocities(s) && norm2 < NORM2 && norm2 > 1.0 / NORM2;
-  }
 };
-
-/// The state with the velocities that result from a load in a step h.
-BodyState kicked(const RigidBody &body, const BodyState &before, const Load &load, double h);
 
 /// The fastest harmonic motion that is stable, in radians per step, from a trial of each method in
 /// tests/unit/test_limits.cpp.

@@ -34,7 +34,7 @@ class Start : protected Pointers {
       Pointers(lmp), starters([&] {
         std::vector<Starter> all;
         for (Step *one : fixes) {
-          one->bath.box.refer_to_box(h);
+          one->bath.refer_to_box(h);
           all.push_back({one, one->bodies.snapshot(), {}});
         }
         return all;
@@ -85,9 +85,10 @@ class Start : protected Pointers {
       one.step->bath.begin_start(nodes);
       one.work.resize(bodies.nmoved());
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-        collocation.begin(bodies.rigid_of(ibody),
-                          local_series(bodies.rigid_of(ibody), one.step->scaled(ibody),
-                                       one.step->acting(ibody), spacing),
+        collocation.begin(bodies.body[ibody].rigid,
+                          local_series(bodies.body[ibody].rigid,
+                                       one.step->bath.scaled(bodies.state[ibody]),
+                                       one.step->bath.acting(ibody), spacing),
                           one.work[ibody]);
     }
   }
@@ -159,9 +160,8 @@ class Start : protected Pointers {
   void put_back()
   {
     for (auto &one : starters) {
-      one.step->bodies.put_back_states(one.before);
-      one.step->bodies.put_back_loads(one.before);
-      one.step->bath.box.leave_nodes();
+      one.step->bodies.put_back(one.before);
+      one.step->bath.leave_nodes();
     }
   }
 
@@ -172,14 +172,14 @@ class Start : protected Pointers {
     for (auto &one : starters) {
       Bodies &bodies = one.step->bodies;
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-        bodies.change_state(ibody) = collocation.state_at(node, one.work[ibody], nodes.spacing);
-      one.step->bath.box.enter_node(nodes, node);
+        bodies.state[ibody] = collocation.state_at(node, one.work[ibody], nodes.spacing);
+      one.step->bath.enter_node(nodes, node);
       one.step->ownership.spread_states();
       one.step->sites.place(true);
     }
     if (forces.largest_displacement() > 0.5 * neighbor->skin) return false;
     int vflag = 0;
-    for (auto &one : starters) vflag |= one.step->bath.box.vflag();
+    for (auto &one : starters) vflag |= one.step->bath.vflag();
     forces.evaluate(0, vflag);
     ++evaluations;
     for (auto &one : starters) one.step->sites.gather_loads(atom->f, atom->torque);
@@ -187,11 +187,11 @@ class Start : protected Pointers {
       const Bodies &bodies = one.step->bodies;
       one.step->bath.visit_node(nodes, node);
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-        const Body &body = bodies.body_at(ibody);
+        const Body &body = bodies.body[ibody];
         const double length = body.extent > 0.0 ? body.extent : neighbor->skin;
         change = std::max(change,
-                          collocation.set_load(node, body.rigid, bodies.state_of(ibody),
-                                               one.step->acting(ibody), nodes.spacing, length,
+                          collocation.set_load(node, body.rigid, bodies.state[ibody],
+                                               one.step->bath.acting(ibody), nodes.spacing, length,
                                                one.work[ibody]));
       }
     }
@@ -233,8 +233,8 @@ class Start : protected Pointers {
         if (one.step->ownership.in_body(i))
           longest = std::max(longest, span * length(atom->v[i]) / reach);
       for (int ibody = 0; ibody < one.step->bodies.nowned(); ++ibody)
-        longest = std::max(
-            longest, span * length(one.step->bodies.state_of(ibody).omega_body) / LARGEST_TURN);
+        longest = std::max(longest,
+                           span * length(one.step->bodies.state[ibody].omega_body) / LARGEST_TURN);
     }
     return nodes.h / over_ranks(MPI_MAX, longest, world);
   }
@@ -244,7 +244,7 @@ class Start : protected Pointers {
   {
     MotionSums here;
     for (int ibody = 0; ibody < one.step->bodies.nowned(); ++ibody)
-      here.add(one.step->bodies.rigid_of(ibody), one.before.states[ibody],
+      here.add(one.step->bodies.body[ibody].rigid, one.before.states[ibody],
                collocation.series(one.work[ibody], pairs), nodes.spacing);
     return one.step->fast_edge(here);
   }
@@ -255,8 +255,9 @@ class Start : protected Pointers {
     for (auto &one : starters) {
       Bodies &bodies = one.step->bodies;
       for (int ibody = 0; ibody < bodies.nmoved(); ++ibody)
-        seed(one.step->scheme(), bodies.rigid_of(ibody), collocation.series(one.work[ibody], pairs),
-             nodes.spacing, nodes.h, bodies.history(ibody));
+        seed(one.step->scheme(), bodies.body[ibody].rigid,
+             collocation.series(one.work[ibody], pairs), nodes.spacing, nodes.h,
+             bodies.history(ibody));
       one.step->bath.seed(nodes, pairs, one.step->scheme().values());
     }
   }

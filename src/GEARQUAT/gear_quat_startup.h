@@ -12,7 +12,7 @@
 
    Collocation: forces and torques at the nodes t = k H, k = -m..m, are interpolated by one
    polynomial; integrating it from the exact start gives x, v and L at a node, q turns with L
-   (gear_quat_momentum.h), and the forces there replace those of the polynomial (Picard iteration).
+   (gear_quat_integrator.h), and the forces there replace those of the polynomial (Picard iteration).
    Pairs of nodes are added outwards: each is extrapolated by the polynomial through the nodes
    inside it.  Rows 0 and 1 stay exact: no difference of positions enters a velocity.  The start is
    symmetric under time reversal, because the nodes on both sides are treated equally.

@@ -45,16 +45,11 @@ static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-
 
 /* ---------------------------------------------------------------------- */
 
-Step::Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
-           Ownership &ownership, Sites &sites, const OtherFixes &others, Tally tally) :
-    Pointers(lmp),
-    fix(fix), args(args), ownership(ownership), time_step(lmp), bath(lmp, fix, args, bodies, sites),
-    fleet(fleet), bodies(bodies), sites(sites), others(others), present(args.scheme),
+Step::Step(const Scene &scene, const Fleet &fleet, const OtherFixes &others, Tally tally) :
+    Scene(scene), time_step(lmp), bath(scene), fleet(fleet), others(others), present(args.scheme),
     tally(std::move(tally))
 {
-  if (args.control.eps > 0.0)
-    tolerance = std::make_unique<Tolerance>(lmp, fix, args.scheme, args.control, args.every_time,
-                                            bodies, time_step);
+  if (args.control.eps > 0.0) tolerance = std::make_unique<Tolerance>(scene, time_step);
 }
 
 const Step *Fleet::find(const Fix *fix) const
@@ -118,10 +113,6 @@ void Step::begin_run()
   const double h = length();
   bath.begin_run(!started, tolerance ? std::min(h, bath.longest_step()) : h);
   if (update->nsteps > 0) note_rates(edge_rate * std::fabs(h));
-  if (update->nsteps > 0 && !started) {    // before anything has changed
-    find_limits(h);
-    watch_all(atom->f);
-  }
   phase = Phase::SET_UP;
 }
 
@@ -135,10 +126,10 @@ void Step::end_run()
   }
   if (phase == Phase::CORRECTED) {    // LAMMPS has ended the run before its last step
     for (int ibody = 0; ibody < bodies.nmoved() && !reads_states(); ++ibody) {
-      BodyState &state = bodies.change_state(ibody);
-      integrator->body_state(bodies.rigid_of(ibody), bodies.history(ibody), state,
-                             bodies.change_frame(ibody));
-      if (bath.box.moves()) bath.box.to_space(state);
+      BodyState &state = bodies.state[ibody];
+      integrator->body_state(bodies.body[ibody].rigid, bodies.history(ibody), state,
+                             bodies.frame[ibody]);
+      if (bath.moves_box()) bath.to_space(state);
     }
     place_correction();
   }
@@ -163,12 +154,12 @@ std::vector<Step *> Step::start(double **f, double **torque)
       one->started = false;
       one->tolerance->begin(one->bath.longest_step());
     }
-    if (needs) one->watch_loads(f);
+    for (int ibody = 0; ibody < one->bodies.nmoved() && needs; ++ibody) one->watch_load(ibody, f);
     if (one->bootstraps()) {
       together.push_back(one);
       starts += needs;
     } else if (needs) {
-      one->bath.box.refer_to_box(one->length());
+      one->bath.refer_to_box(one->length());
       one->seed_local(one->tolerance ? 3 : 2);
       one->note_start();
     }
@@ -216,23 +207,22 @@ bool Step::forces_changed(double **f)
   double here[2] = {0.0, 0.0};    // error of the last step, force on an atom
   for (const Step *one : fleet.members)
     for (int ibody = 0; ibody < one->bodies.nowned(); ++ibody)
-      here[0] = std::max(here[0], one->bodies.body_at(ibody).length(one->bodies.last_of(ibody)));
+      here[0] = std::max(here[0], one->bodies.body[ibody].length(one->bodies.last[ibody]));
   for (const Site &site : sites)
     here[1] = std::max(here[1], force->ftm2v * GearQuat::length(f[site.atom]));
   const auto largest = over_ranks(MPI_MAX, here, world);
 
   double ratio = 0.0;
-  for (const auto *list : {&bodies.points, &bodies.tops})
-    for (const int ibody : *list) {
-      double rows[MAX_SIZE];
-      std::copy_n(bodies.history(ibody), scheme().size(), rows);
-      const Body &body = bodies.body_at(ibody);
-      const Correction found = list == &bodies.points
-          ? integrator->correct_center(body.rigid, acting(ibody), rows)
-          : integrator->correct(body.rigid, acting(ibody), rows);
-      const double one = body.length(found) / (largest[0] + rounding(ibody, largest[1]));
-      ratio = std::isfinite(one) ? std::max(ratio, one) : 2.0 * OTHER_NOISE;
-    }
+  bodies.for_moved([&](int ibody) {
+    double rows[MAX_SIZE];
+    std::copy_n(bodies.history(ibody), scheme().size(), rows);
+    const Body &body = bodies.body[ibody];
+    const Correction found = body.rigid.rotational_freedoms() == 0
+        ? integrator->correct_center(body.rigid, bath.acting(ibody), rows)
+        : integrator->correct(body.rigid, bath.acting(ibody), rows);
+    const double one = body.length(found) / (largest[0] + rounding(ibody, largest[1]));
+    ratio = std::isfinite(one) ? std::max(ratio, one) : 2.0 * OTHER_NOISE;
+  });
   ratio = over_ranks(MPI_MAX, ratio, world);
   return ratio > OTHER_NOISE || (ratio > OTHER_FORCES && forces_can_be_followed());
 }
@@ -240,8 +230,8 @@ bool Step::forces_changed(double **f)
 /// The part of a residual due to rounding, as a length.  force: the largest one on an atom.
 double Step::rounding(int ibody, double force) const
 {
-  const Body &body = bodies.body_at(ibody);
-  const BodyState &s = bodies.state_of(ibody);
+  const Body &body = bodies.body[ibody];
+  const BodyState &s = bodies.state[ibody];
   const double size = std::fabs(length());
   double response = 1.0 / body.rigid.mass;
   for (const double moment : body.rigid.inertia)
@@ -261,7 +251,7 @@ bool Step::has_to_start(double **f)
     utils::logmesg(lmp, "Fix gear/quat {}: {}; histories are rebuilt\n", fix->id, reason);
   const bool needs = !started || reason;
   for (int ibody = 0; ibody < bodies.nmoved() && !needs && scheme().is_verlet(); ++ibody) {
-    project_norm(bodies.change_state(ibody).q);
+    project_norm(bodies.state[ibody].q);
     seed(ibody, 3);
   }
   return needs;
@@ -269,8 +259,8 @@ bool Step::has_to_start(double **f)
 
 void Step::seed(int ibody, int terms)
 {
-  const RigidBody &rigid = bodies.rigid_of(ibody);
-  auto series = local_series(rigid, scaled(ibody), acting(ibody), length());
+  const RigidBody &rigid = bodies.body[ibody].rigid;
+  auto series = local_series(rigid, bath.scaled(bodies.state[ibody]), bath.acting(ibody), length());
   series.terms = terms;
   GearQuat::seed(scheme(), rigid, series, length(), length(), bodies.history(ibody));
 }
@@ -474,7 +464,7 @@ void Step::end(double **f, double **torque)
   for (;;) {
     sites.gather_loads(f, torque);
     // here, since the atoms are at the positions of the forces
-    if (bath.box.others_ask_for_virial()) tally(vflag_of_step, f);
+    if (bath.others_ask_for_virial()) tally(vflag_of_step, f);
     correct(f, is_placed || reads_states());
     if (!tolerance || tolerance->accepts()) break;
     shorten();
@@ -509,8 +499,8 @@ void Step::predict(double **f)
   time_step.begin();
   find_limits(h);
   const auto check = [&](int ibody) {
-    const BodyState &state = bodies.state_of(ibody);
-    if (!tolerance && !limits.keep_velocities(state)) stop(ibody, state, h, f);
+    const BodyState &state = bodies.state[ibody];
+    if (!tolerance && !limits.keep(state)) stop(ibody, state, h, f);
   };
   constexpr int WIDTH = Scheme::SECOND_WIDTH;    // with velocities of half a step before
   std::array<double, 2 * WIDTH> half;
@@ -524,7 +514,7 @@ void Step::predict(double **f)
   for (const int ibody : bodies.points) {
     double *rows = bodies.history(ibody);
     integrator->predict_center(rows);
-    integrator->center_state(bodies.rigid_of(ibody), seen(rows), bodies.change_state(ibody));
+    integrator->center_state(bodies.body[ibody].rigid, seen(rows), bodies.state[ibody]);
     check(ibody);
   }
   for (size_t first = 0; first < bodies.tops.size();) {
@@ -542,6 +532,21 @@ void Step::predict(double **f)
   bath.predict(*integrator);
 }
 
+/// A shrink-wrapped box sets no limits.
+void Step::find_limits(double h)
+{
+  constexpr int SHRINKS = 2;    // LAMMPS' boundary codes from this code on are shrink-wrapped
+  double longest = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const int *faces = domain->boundary[k];
+    const bool follows = faces[0] >= SHRINKS || faces[1] >= SHRINKS;
+    longest = std::max(longest, follows ? HUGE_VAL : domain->prd[k]);
+  }
+  limits = MotionLimits(h, longest);
+  if (tolerance && args.control.shortest == 0.0)    // turns are exact, and errors small
+    limits.rate2 = HUGE_VAL;
+}
+
 void Step::place_prediction()
 {
   ownership.spread_moved();
@@ -555,14 +560,14 @@ Block Step::block_of(const std::vector<int> &list, size_t first, size_t most)
   const size_t end = std::min(list.size(), first + most);
   for (size_t n = first; n < end; ++n) {
     const int ibody = list[n], k = block.count;
-    const Body &body = bodies.body_at(ibody);
+    const Body &body = bodies.body[ibody];
     if (body.off && k > 0) break;
     block.bodies[k] = &body.rigid;
     block.rows[k] = bodies.history(ibody);
-    block.states[k] = &bodies.change_state(ibody);
-    block.frames[k] = &bodies.change_frame(ibody);
-    block.loads[k] = &bodies.load_of(ibody);
-    block.last[k] = &bodies.change_last(ibody);
+    block.states[k] = &bodies.state[ibody];
+    block.frames[k] = &bodies.frame[ibody];
+    block.loads[k] = &bodies.load[ibody];
+    block.last[k] = &bodies.last[ibody];
     ++block.count;
     if (body.off) break;
   }
@@ -572,8 +577,8 @@ Block Step::block_of(const std::vector<int> &list, size_t first, size_t most)
 /// Replaces the loads of a block where they are not those of the bodies.
 void Step::scale(Block &block, const int *ids, Scaled &scaled) const
 {
-  const bool in_box = bath.box.moves();
-  for (int k = 0; k < block.count && (in_box || bodies.body_at(*ids).off); ++k) {
+  const bool in_box = bath.moves_box();
+  for (int k = 0; k < block.count && (in_box || bodies.body[*ids].off); ++k) {
     scaled.loads[k] = bath.scaled(bodies.acting(ids[k]));
     block.loads[k] = &scaled.loads[k];
     std::copy_n(block.rows[k], 3, scaled.centers[k]);
@@ -588,14 +593,14 @@ void Step::correct(double **f, bool states)
     if (bath.needs_sums()) {
       for (const auto *list : {&bodies.points, &bodies.tops}) sum(*list);
       bath.find_friction(*integrator);
-      bath.conclude(integrator->step());
     }
   }
   correct<true>(bodies.points, f, states);
   correct<false>(bodies.tops, f, states);
   if (bath.acts()) bath.end_correction(*integrator);
   if (bath.acts() && states) watch_all(f);    // otherwise their predictions were tested
-  if (bath.acts() && tolerance) tolerance->note_errors(bath);
+  if (bath.moves_box() && tolerance)
+    tolerance->include({bath.error_of_box(args.control.energy, length())});
 }
 
 void Step::sum(const std::vector<int> &list)
@@ -618,8 +623,8 @@ template <bool ARE_POINTS> void Step::correct(const std::vector<int> &list, doub
   for (size_t first = 0; first < list.size();) {
     Block block = block_of(list, first, most);
     const int *const ids = &list[first];
-    const Body &body = bodies.body_at(*ids);
-    const bool is_special = body.off || has_flow, masked = body.off && !bath.box.moves();
+    const Body &body = bodies.body[*ids];
+    const bool is_special = body.off || has_flow, masked = body.off && !bath.moves_box();
     const BodyState before = masked ? *block.states[0] : BodyState();
     Scaled scaled;
     scale(block, ids, scaled);
@@ -639,7 +644,7 @@ template <bool ARE_POINTS> void Step::correct(const std::vector<int> &list, doub
     if (!ARE_POINTS) integrator->find_states(block);
     for (int k = 0; ARE_POINTS && k < block.count; ++k)
       integrator->center_state(*block.bodies[k], block.rows[k], *block.states[k]);
-    if (masked) block.last[0]->work = work_between(bodies.load_of(*ids), before, *block.states[0]);
+    if (masked) block.last[0]->work = work_between(bodies.load[*ids], before, *block.states[0]);
     bath.place(block, ids, scaled.centers);
     for (int k = 0; k < block.count && !coupled && !tolerance; ++k) watch(ids[k], f);
   }
@@ -691,10 +696,10 @@ void Step::accept(double **f)
 {
   const double h = integrator->step();
   if (tolerance) watch_all(f);    // otherwise correct() has done this
-  bath.box.note_step(h);
+  bath.note_step(h);
   const int known = args.start == Arguments::Start::ZERO ? 2 : 3;
   for (const int ibody : bodies.fresh) {
-    watch_load(ibody, h, f);
+    watch_load(ibody, f);
     seed(ibody, known);
   }
   if (!bodies.fresh.empty()) bodies.take_in_fresh();
@@ -705,14 +710,15 @@ void Step::accept(double **f)
 /// Tests a corrected state.
 inline void Step::watch(int ibody, double **f) const
 {
-  const BodyState &state = bodies.state_of(ibody);
+  const BodyState &state = bodies.state[ibody];
   if (!limits.keep(state)) stop(ibody, state, integrator->step(), f);
 }
 
 void Step::watch_all(double **f) const
 {
-  for (const auto *list : {&bodies.points, &bodies.tops})
-    for (const int ibody : *list) watch(ibody, f);
+  bodies.for_moved([&](int ibody) {
+    watch(ibody, f);
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -729,7 +735,6 @@ void Step::set_scheme(const Scheme &scheme)
 {
   present = scheme;
   bodies.set_scheme(scheme);
-  ownership.extended().set_scheme(scheme);
   bath.set_scheme(scheme);
   if (length() != 0.0) make_integrator();
 }

@@ -70,26 +70,23 @@ struct Fleet {
 
 /// Before a run ends the run on all ranks with a reason: a time step of zero, r-RESPA with different
 /// steps, or atoms that another fix moves too.
-void refuse_scene(LAMMPS *lmp, const Fix *fix, const Fleet &fleet, const Ownership &ownership);
+void refuse_scene(LAMMPS *lmp, const Scene &scene, const Fleet &fleet);
 
 /// Writes the report to screen and log on rank 0, if args.report requests it: what is on, what is off
 /// and why, and which pairs of atoms cost time and move nothing.  In any case it warns of a pair
 /// style that acts between atoms of a body.  To be called in setup(), when neighbor lists are built
 /// and bodies have their ghosts.  Collective.
-void report_scene(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet,
-                  const Bodies &bodies, Ownership &ownership, const Sites &sites);
+void report_scene(LAMMPS *lmp, const Scene &scene, const Fleet &fleet);
 
 /// Starts the histories of these fixes together, with steps of h.  Atoms are then as before.
 /// Collective.
 void start_together(LAMMPS *lmp, const std::vector<Step *> &fixes, double h);
 
-class Step : protected Pointers {
+class Step : public Scene {
  public:
-  /// bodies: empty, with histories of args.scheme.  tally(vflag, f): adds the virial of the
-  /// constraint forces, computed from the forces f on atoms.
+  /// tally(vflag, f): adds the virial of the constraint forces, computed from the forces f on atoms.
   using Tally = std::function<void(int, double **)>;
-  Step(LAMMPS *lmp, const Fix *fix, const Arguments &args, const Fleet &fleet, Bodies &bodies,
-       Ownership &ownership, Sites &sites, const OtherFixes &others, Tally tally);
+  Step(const Scene &scene, const Fleet &fleet, const OtherFixes &others, Tally tally);
 
   Phase phase = Phase::DEFINED;
   bool had_run() const { return phase >= Phase::SET_UP; }
@@ -150,9 +147,6 @@ class Step : protected Pointers {
   /// The current integrator; null while there are no histories.
   const Integrator *present_integrator() const { return started ? integrator.get() : nullptr; }
 
-  const Fix *const fix;
-  const Arguments &args;
-  Ownership &ownership;
   TimeStep time_step;
   std::unique_ptr<Tolerance> tolerance;    ///< null: the step is LAMMPS' own
   Bath bath;
@@ -161,8 +155,6 @@ class Step : protected Pointers {
  private:
   friend class Start;
   const Fleet &fleet;
-  Bodies &bodies;
-  Sites &sites;
   const OtherFixes &others;
   Scheme present;    ///< without keyword tolerance
   Tally tally;
@@ -180,11 +172,6 @@ class Step : protected Pointers {
   std::vector<std::string> other_settings(const Settings &mine) const;
   void fields(Fields &v);
   int of_tolerance() const { return tolerance ? Tolerance::ELEMENTS : 0; }
-
-  /// The load on a body, after Bath::measure().
-  Load acting(int ibody) const { return bath.acting(ibody); }
-  /// The state in the history of a body.
-  BodyState scaled(int ibody) const { return bath.box.scaled(bodies.state_of(ibody)); }
 
   // start
 
@@ -224,8 +211,7 @@ class Step : protected Pointers {
 
   MotionLimits limits;    ///< for the current step and box
   void find_limits(double h);
-  void watch_loads(double **f);
-  void watch_load(int ibody, double h, double **f) const;
+  void watch_load(int ibody, double **f) const;
   void watch(int ibody, double **f) const;
   void watch_all(double **f) const;
   [[noreturn]] void stop(int ibody, const BodyState &s, double h, double **f) const;

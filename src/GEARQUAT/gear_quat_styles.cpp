@@ -33,21 +33,15 @@ using namespace Fact;
 ------------------------------------------------------------------------- */
 
 static constexpr Style PAIRS[] = {
-    {"^[emst]?dpd", UNREPEATABLE | RANDOM, "friction and random forces, but not mdpd/rhosum"},
-    {"^gran", UNREPEATABLE | DISSIPATIVE, "histories of contacts, but not in gran/hooke; friction"},
+    {"^[emst]?dpd ^dsmc", UNREPEATABLE | RANDOM,
+     "random forces or collisions, but not mdpd/rhosum"},
     {"^brownian", UNREPEATABLE | RANDOM | BACKGROUND, "forces of a fluid, by the time step"},
-    {"^dsmc", UNREPEATABLE | RANDOM, "random collisions change velocities"},
-    {"^reax", UNREPEATABLE, "charges of fix qeq depend on earlier steps"},
-    {"^bpm", UNREPEATABLE | DISSIPATIVE, "used with bonds bpm, which break; friction"},
-    {"^amoeba", UNREPEATABLE, "induced dipoles are predicted from earlier evaluations"},
-    {"^hippo", UNREPEATABLE, "as amoeba"},
-    {"^tracker", UNREPEATABLE, "keeps and counts contacts"},
-    {"^peri", UNREPEATABLE, "bonds break, and peri/ves has a viscoelastic history"},
-    {"^rheo", UNREPEATABLE | DISSIPATIVE, "reads what fix rheo computes once in a step; viscosity"},
-    {"^smd", UNREPEATABLE | DISSIPATIVE, "every evaluation integrates damage; viscosity"},
+    {"^gran ^bpm ^rheo ^smd", UNREPEATABLE | DISSIPATIVE,
+     "histories of contacts, bonds or damage, but not in gran/hooke; friction or viscosity"},
+    {"^reax ^amoeba ^hippo ^tracker ^peri", UNREPEATABLE,
+     "charges, dipoles, contacts or bonds depend on earlier evaluations"},
     {"^lubricate", DISSIPATIVE | BACKGROUND, "friction of the fluid between particles"},
-    {"^sph", DISSIPATIVE, "viscosity"},
-    {"^mesocnt/viscous", DISSIPATIVE, "friction between tubes"},
+    {"^sph ^mesocnt/viscous", DISSIPATIVE, "viscosity or friction"},
 };
 
 static constexpr char GROUP[] = "give it a group without atoms of bodies";
@@ -60,92 +54,52 @@ static constexpr char WALL[] = "use a wall that exerts a force, such as fix wall
 static constexpr char ONE[] = "unfix one of the two";
 
 static constexpr Style FIXES[] = {
-    {"^addforce", REPEATABLE, "constants, or variables of positions and the time"},
-    {"^efield", REPEATABLE, "charges and dipoles in a field of constants, variables or positions"},
-    {"^enforce2d", REPEATABLE | NO_FORCE, "sets components along z to 0"},
-    {"^freeze$", REPEATABLE, "sets forces and torques to 0"},
-    {"^gravity", REPEATABLE, "mass times a constant or variable"},
-    {"^indent$", REPEATABLE, "a function of positions and variables"},
-    {"^lineforce", REPEATABLE, "removes components"},
-    {"^planeforce", REPEATABLE, "removes a component"},
-    {"^setforce", REPEATABLE, "constants, or variables of positions and the time"},
-    {"^spring$", REPEATABLE, "a function of centers of mass"},
-    {"^spring/self", REPEATABLE, "a function of present and initial positions"},
+    {"^addforce ^efield ^setforce", REPEATABLE,
+     "constants, or variables of positions and the time"},
+    {"^freeze$ ^gravity ^lineforce ^planeforce", REPEATABLE, "constants, or components set to 0"},
+    {"^indent$ ^spring$ ^spring/self ^wall/region$", REPEATABLE, "functions of positions"},
+    {"^wall/harmonic ^wall/lj ^wall/morse ^wall/colloid ^wall/table", REPEATABLE,
+     "functions of positions and the place of the wall"},
     {"^viscous$", REPEATABLE, "a function of velocities"},
-    {"^wall/harmonic", REPEATABLE, "a function of positions and the place of the wall"},
-    {"^wall/lj", REPEATABLE, "as wall/harmonic: wall/lj93, wall/lj126 and wall/lj1043"},
-    {"^wall/morse", REPEATABLE, "as wall/harmonic"},
-    {"^wall/colloid", REPEATABLE, "as wall/harmonic"},
-    {"^wall/region$", REPEATABLE, "a function of positions; the region may follow variables"},
-    {"^wall/table", REPEATABLE, "as wall/harmonic"},
+    {"^enforce2d", REPEATABLE | NO_FORCE, "sets components along z to 0"},
     {"^OMP", THREADS, "FixOMP::pre_force() calls ThrData::init_force()"},
-    {"^store/force", NO_FORCE, "copies forces"},
+    {"^store/force ^nonaffine/displacement", NO_FORCE, "reads forces or positions"},
     {"^numdiff", NO_FORCE, "differences of energies, after which forces are put back"},
-    {"^nonaffine/displacement", NO_FORCE, "reads positions"},
-    {"^INTEL", NO_FORCE, "adds up what threads have computed"},
-    {"^GPU", NO_FORCE, "receives what a device has computed"},
+    {"^INTEL ^GPU", NO_FORCE, "adds up what threads or a device have computed"},
     {"^langevin", RANDOM | CHANGE | AT_INTEGRATION, "with gjf it also changes velocities",
      "leave out its keyword gjf"},
-    {"^brownian", RANDOM, "random displacements, and it integrates itself"},
-    {"^gle", RANDOM, "random changes of velocities with memory"},
-    {"^gld", RANDOM, "random forces with memory, and it integrates itself"},
-    {"^ttm", RANDOM, "random forces by the temperature of electrons"},
-    {"^qtb", RANDOM, "random forces with memory, with friction"},
+    {"^brownian ^gle ^gld ^ttm ^qtb", RANDOM, "random forces or displacements"},
     {"^srd", RANDOM | BESIDE_GROUP, "collisions with atoms of another group, each in a step"},
-    {"^wall/gran", DISSIPATIVE, "friction of contacts"},
-    {"^damping/cundall", DISSIPATIVE, "its forces change sign with velocities"},
+    {"^wall/gran ^damping/cundall", DISSIPATIVE, "friction of contacts, or by signs of velocities"},
     {"^dt/reset", TIME_STEP, "sets update->dt by velocities and forces"},
     {"^deform", CARRIES_BODIES, "with remap x; with v and none no atom is moved"},
-    {"^np[th]$", CARRIES_BODIES, "FixNH::remap()"},
-    {"^np[th]/[abceigos]", CARRIES_BODIES, "variants of npt and nph, but not npt/uef and npt/kk"},
-    {"^press/", CARRIES_BODIES, "remap() of press/berendsen and press/langevin"},
-    {"^rigid/np[th]", CARRIES_BODIES, "FixRigidNH::remap()"},
-    {"^bocs", CARRIES_BODIES, "FixBocs::remap()"},
-    {"^tgnp[th]", CARRIES_BODIES, "FixTGNHDrude::remap()"},
-    {"^box/relax", CARRIES_BODIES, "remap() between minimizations"},
+    {"^np[th]$ ^np[th]/[abceigos] ^rigid/np[th] ^tgnp[th] ^bocs ^press/ ^box/relax", CARRIES_BODIES,
+     "their remap(), but not of npt/uef and npt/kk"},
 
     // doc/src/fix_gear_quat.rst has the same table of effects on atoms
 
-    {"^momentum", CHANGE, "subtracts velocities of a rigid motion, of the group or of chunks",
-     MOMENTUM},
-    {"^temp/rescale", CHANGE, "scales velocities, or with eff those of electrons", TEMP},
-    {"^temp/berendsen", CHANGE, "scales velocities", TEMP},
-    {"^temp/csvr", CHANGE, "scales velocities", TEMP},
-    {"^heat$", CHANGE, "scales velocities, and subtracts one of them", GROUP},
-    {"^wall/reflect", REFLECTION, "mirrors atoms beyond the wall", WALL},
-    {"^wall/piston$", REFLECTION, "as wall/reflect", WALL},
-    {"^temp/csld", CHANGE, "mixes each velocity with a random one", TEMP},
-    {"^lambda_thermostat", CHANGE, "changes some velocities at a time", TEMP},
-    {"^ehex", CHANGE, "displaces atoms besides scaling velocities", GROUP},
-    {"^thermal/conductivity", CHANGE, "exchanges the energies of two atoms", GROUP},
-    {"^viscosity", CHANGE, "exchanges momenta of two atoms", GROUP},
-    {"^oneway", CHANGE, "reverses velocities of atoms in a region", GROUP},
-    {"^shardlow", CHANGE, "random changes of velocities, pair by pair", GROUP},
-    {"^lb/momentum", CHANGE, "subtracts a velocity of the fluid, too", MOMENTUM},
+    {"^momentum ^lb/momentum", CHANGE, "subtracts velocities of a rigid motion", MOMENTUM},
+    {"^temp/rescale ^temp/berendsen ^temp/csvr ^temp/csld ^lambda_thermostat", CHANGE,
+     "scales velocities, or mixes them with random ones", TEMP},
+    {"^heat$ ^ehex ^thermal/conductivity ^viscosity ^oneway ^shardlow ^wall/flow ^smd/setvel",
+     CHANGE, "sets, scales, exchanges or reverses velocities", GROUP},
+    {"^atom/swap ^mol/swap ^neighbor/swap ^sgcmc ^charge/regulation", CHANGE,
+     "exchanges types, or inserts and removes ions", GROUP},
+    {"^sph/stationary ^pimd", CHANGE, "advances densities, or integrates beads", GROUP},
+    {"^wall/reflect ^wall/piston$", REFLECTION, "mirrors atoms beyond the wall", WALL},
     {"^lb/viscous", CHANGE, "exchanges momentum with the fluid in each step",
      "use fix rigid for them"},
-    {"^wall/flow", CHANGE, "gives a new random velocity to atoms that pass a plane", GROUP},
-    {"^smd/setvel", CHANGE, "sets velocities", GROUP},
-    {"^sph/stationary", CHANGE, "advances densities, as this fix does", GROUP},
     {"^tmd$", CHANGE, "moves atoms towards a target", "use fix spring or fix spring/self"},
     {"^recenter", CHANGE | ANY, "shifts positions, also of another group",
      "subtract the center of mass in the analysis"},
-    {"^shake", CHANGE | CONSTRAINED, "subtracts the degrees of freedom as well", BONDS},
-    {"^rattle", CHANGE | CONSTRAINED, "as shake, and corrects velocities", BONDS},
-    {"^ilves", CHANGE | CONSTRAINED, "as shake", BONDS},
-    {"^atom/swap", CHANGE, "exchanges types of two atoms", GROUP},
-    {"^mol/swap", CHANGE, "exchanges types of atoms of a molecule", GROUP},
-    {"^neighbor/swap", CHANGE, "exchanges types of two atoms", GROUP},
-    {"^sgcmc", CHANGE, "changes types of atoms", GROUP},
+    {"^shake ^rattle ^ilves", CHANGE | CONSTRAINED, "subtracts the degrees of freedom as well",
+     BONDS},
     {"^gcmc", EXCHANGE, "with mol and rigid it inserts and removes whole bodies",
      "to exchange whole bodies use its keywords mol and rigid, without MC moves, and keyword mol "
      "of fix gear/quat"},
-    {"^charge/regulation", CHANGE, "inserts and removes ions", GROUP},
-    {"^gemc", CHANGE | ANY, "exchanges atoms between two boxes and changes these", ONE},
     {"^hmc", CHANGE | ANY, "puts back atoms and knows rigid/small alone",
      "use fix rigid/small with fix hmc"},
-    {"^pimd", CHANGE, "integrates beads of a ring polymer", GROUP},
-    {"^ipi", CHANGE | ANY, "takes positions and the box from a server", ONE},
+    {"^gemc ^ipi", CHANGE | ANY, "exchanges or places atoms, and changes the box", ONE},
 };
 
 /* ----------------------------------------------------------------------
@@ -156,20 +110,22 @@ template <int N, typename Matches>
 static const Style *find(const Style (&table)[N], unsigned any_of, Matches matches)
 {
   for (const auto &row : table)
-    if (row.is(any_of) && matches(row.pattern)) return &row;
+    if (row.is(any_of))
+      for (const auto &pattern : utils::split_words(row.patterns))
+        if (matches(pattern)) return &row;
   return nullptr;
 }
 
 const Style *GearQuat::known(unsigned any_of, const Fix *fix)
 {
-  return find(FIXES, any_of, [fix](const char *pattern) {
+  return find(FIXES, any_of, [fix](const std::string &pattern) {
     return utils::strmatch(fix->style, pattern);
   });
 }
 
 const Style *GearQuat::known_pair(unsigned any_of, const Force *force)
 {
-  return find(PAIRS, any_of, [force](const char *pattern) {
+  return find(PAIRS, any_of, [force](const std::string &pattern) {
     return force->pair && const_cast<Force *>(force)->pair_match(pattern, 0, 1);
   });
 }
@@ -231,13 +187,6 @@ bool GearQuat::reads_at_end(LAMMPS *lmp, const Fix *owner)
 /* ----------------------------------------------------------------------
    other fixes that act on atoms of bodies
 ------------------------------------------------------------------------- */
-
-OtherFixes::OtherFixes(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
-                       const Ownership &ownership, const Sites &sites, const Arguments &args) :
-    Pointers(lmp),
-    fix(fix), bodies(bodies), ownership(ownership), sites(sites), args(args)
-{
-}
 
 void OtherFixes::init()
 {
@@ -325,13 +274,11 @@ tagint GearQuat::shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix 
 void OtherFixes::watch_places() const
 {
   if (watched.empty()) return;
-  std::vector<std::string> names;
-  for (const auto *one : watched) names.push_back(name_of(one));
   for (const Site &site : sites)
     if (!sites.is_there(site))
       error->one(FLERR,
                  "Fix gear/quat: {} has moved atom {} of body {} in step {}, and bodies do not "
                  "follow; {}",
-                 utils::join_words(names, ", "), atom->tag[site.atom], bodies.body_at(site.body).id,
+                 name_of(watched.front()), atom->tag[site.atom], bodies.body[site.body].id,
                  update->ntimestep, known(Fact::ON_ATOMS, watched.front())->instead);
 }

@@ -27,8 +27,6 @@ class Force;
 
 namespace LAMMPS_NS::GearQuat {
 
-struct Arguments;
-
 namespace Fact {
   enum : unsigned {
     // forces of any style
@@ -60,7 +58,7 @@ namespace Fact {
 
 /// A row of a table.
 struct Style {
-  const char *pattern;
+  const char *patterns;
   unsigned facts;
   const char *reason;
   const char *instead = "";    ///< an alternative that is suitable for bodies
@@ -103,10 +101,9 @@ struct NoisyForces {
 /// Collective.
 NoisyForces noise_of_forces(LAMMPS *lmp, const Ownership &ownership);
 
-class OtherFixes : protected Pointers {
+class OtherFixes : protected Scene {
  public:
-  OtherFixes(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, const Ownership &ownership,
-             const Sites &sites, const Arguments &args);
+  explicit OtherFixes(const Scene &scene) : Scene(scene) {}
 
   /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
   void init();
@@ -117,11 +114,6 @@ class OtherFixes : protected Pointers {
   void watch_places() const;
 
  private:
-  const Fix *fix;
-  const Bodies &bodies;
-  const Ownership &ownership;
-  const Sites &sites;
-  const Arguments &args;
   std::vector<const Fix *> watched;    ///< these may move single atoms
 
   void refuse(Fix *other, const Style &row, tagint atom) const;

@@ -35,12 +35,13 @@ static constexpr double LARGE_MOMENTA = 1024.0;    // 2^10
 
 /* ---------------------------------------------------------------------- */
 
-Temperature::Temperature(LAMMPS *lmp, const Fix *fix, const Bodies &bodies,
-                         const ThermostatWords &words, const PressureWords &pressure) :
-    Pointers(lmp),
-    subtracted(words.subtracted), fix(fix), bodies(bodies), words(words),
-    start(words.damp > 0.0 ? words.start : pressure.temperature),
-    stop(words.damp > 0.0 ? words.stop : pressure.temperature), wanted{1.0, 1.0, pressure.any(), {}}
+Temperature::Temperature(const Scene &scene) :
+    Scene(scene), words(args.thermostat),
+    start(words.damp > 0.0 ? words.start : args.pressure.temperature),
+    stop(words.damp > 0.0 ? words.stop : args.pressure.temperature), wanted{1.0,
+                                                                            1.0,
+                                                                            args.pressure.any(),
+                                                                            {}}
 {
 }
 
@@ -57,8 +58,8 @@ void Temperature::find_start()
 {
   double here[2] = {0.0, 0.0};
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const RigidBody &rigid = bodies.rigid_of(ibody);
-    const BodyState &s = bodies.state_of(ibody);
+    const RigidBody &rigid = bodies.body[ibody].rigid;
+    const BodyState &s = bodies.state[ibody];
     here[0] += 2.0 * translational_energy(rigid, s.velocity) +
         2.0 * rotational_energy(rigid, s.omega_body);
     here[1] += rigid.freedoms(domain->dimension);
@@ -92,18 +93,13 @@ ChainTarget Temperature::target(double of_freedoms, double period, double steps_
    degrees of freedom, and the common motion
 ------------------------------------------------------------------------- */
 
-bigint Temperature::atoms_outside() const
-{
-  bigint here = 0;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here += bodies.body_at(ibody).natoms;
-  return atom->natoms - over_ranks(MPI_SUM, here, world);
-}
-
 std::string Temperature::find_outside() const
 {
   if (words.is_random()) return "keyword langevin exerts random forces";
   if (has_flow()) return "fix deform moves the faces of the box";
-  const bigint others = atoms_outside();
+  bigint here = 0;
+  for (int ibody = 0; ibody < bodies.nowned(); ++ibody) here += bodies.body[ibody].natoms;
+  const bigint others = atom->natoms - over_ranks(MPI_SUM, here, world);
   if (others > 0) return fmt::format("{} atoms are in no body of this fix", others);
   const auto with_forces = fixes_with_forces(lmp, fix);
   if (!with_forces.empty()) return name_of(with_forces.front()) + " may exert forces";
@@ -120,14 +116,14 @@ void Temperature::count()
   const int d = domain->dimension;
   double heaviest = 0.0;
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    heaviest = std::max(heaviest, bodies.rigid_of(ibody).mass);
+    heaviest = std::max(heaviest, bodies.body[ibody].rigid.mass);
   heaviest = over_ranks(MPI_MAX, heaviest, world);
   const double unit = ExactSum::scale_of(heaviest * std::max((bigint) 1, bodies.number()));
 
   ExactSum masses[3];
   double here[4] = {};    // directions of translation, and of rotation
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody) {
-    const RigidBody &rigid = bodies.rigid_of(ibody);
+    const RigidBody &rigid = bodies.body[ibody].rigid;
     if (has(ibody, ROTATION)) here[3] += rigid.freedoms(d) - d;
     for (int k = 0; k < 3; ++k) {
       if (!has(ibody, TRANSLATION, k)) continue;
@@ -138,19 +134,19 @@ void Temperature::count()
   sum_over_ranks(masses, world);
   const auto all = over_ranks(MPI_SUM, here, world);
 
-  stated = subtracted >= 0;
+  stated = words.subtracted >= 0;
   outside = find_outside();
   of_total = 0;
   for (int k = 0; k < 3; ++k) {
     mass[k] = masses[k].value();
     count_of[k] = all[k];
     constant[k] = count_of[k] > 0.0 &&
-        (stated ? subtracted >= d
+        (stated ? words.subtracted >= d
                 : domain->periodicity[k] && outside.empty() &&
                  count_of[k] == (double) bodies.number());
     of_total += constant[k];
   }
-  if (stated) of_total = subtracted;
+  if (stated) of_total = words.subtracted;
   freedoms[TRANSLATION] = all[0] + all[1] + all[2] - of_total;
   freedoms[ROTATION] = all[3];
   changes = bodies.changes();
@@ -203,7 +199,7 @@ void Temperature::add(int count, const int *ids, const Velocities &velocities)
   Moving moving = {{}, {}, velocities};    // a lane without a body has no mass
   for (int lane = 0; lane < LANES; ++lane) {
     const int ibody = ids[std::min(lane, count - 1)];
-    const Body &body = bodies.body_at(ibody);
+    const Body &body = bodies.body[ibody];
     const bool counts = lane < count && ibody < bodies.nowned();
     Velocities &v = moving.velocities;
     set(moving.mass, lane, counts ? body.rigid.mass : 0.0);
@@ -232,8 +228,8 @@ bool Temperature::has_flow() const
 std::array<double, 3> Temperature::flow_at(int ibody) const
 {
   double place[3], fraction[3], away[3];
-  through(domain->h, bodies.body_at(ibody).image.data(), away);
-  for (int k = 0; k < 3; ++k) place[k] = bodies.state_of(ibody).center[k] - away[k];
+  through(domain->h, bodies.body[ibody].image.data(), away);
+  for (int k = 0; k < 3; ++k) place[k] = bodies.state[ibody].center[k] - away[k];
   domain->x2lamda(place, fraction);
   std::array<double, 3> flow;
   through(domain->h_rate, fraction, flow.data());
@@ -271,7 +267,7 @@ void Temperature::sum_present()
     int ids[LANES];
     Velocities velocities = {};
     for (int lane = 0; lane < count; ++lane) {
-      const BodyState &state = bodies.state_of(ids[lane] = first + lane);
+      const BodyState &state = bodies.state[ids[lane] = first + lane];
       for (int k = 0; k < 3; ++k) {
         set(velocities.linear[k], lane, state.velocity[k]);
         set(velocities.omega_body[k], lane, state.omega_body[k]);
@@ -300,11 +296,14 @@ std::string Temperature::description() const
       (all ? std::string() : " along " + utils::join_words(along, " and ")) + ",";
 }
 
-void Temperature::tell_once(std::string &last, const std::string &message) const
+void Temperature::tell_freedoms(const char *of)
 {
-  if (message != last && comm->me == 0)
+  const std::string message =
+      fmt::format("{} of {:.0f} degrees of freedom of translation{} and {:.0f} of rotation", of,
+                  freedoms[TRANSLATION], description(), freedoms[ROTATION]);
+  if (message != told && comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat {}: {}\n", fix->id, message);
-  last = message;
+  told = message;
 }
 
 void Temperature::fields(Fields &v)
@@ -312,57 +311,4 @@ void Temperature::fields(Fields &v)
   double found = start;
   v(found, line, freedoms);
   if (v.reads() && start == 0.0) start = stop = found;    // no keyword states one
-}
-
-/* ----------------------------------------------------------------------
-   keyword isokinetic
-------------------------------------------------------------------------- */
-
-void IsokineticConstraint::sum_present()
-{
-  constexpr size_t N = sizeof(KineticSums) / sizeof(double);
-  KineticSums here;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    here.add(bodies.rigid_of(ibody), bodies.load_of(ibody), bodies.state_of(ibody));
-  reduce(MPI_SUM, &here.force_power, &sums.force_power, N, world);
-  alpha = GearQuat::multipliers(mode, sums);
-}
-
-void IsokineticConstraint::begin_run(bool anew)
-{
-  sum_present();
-  refuse_rest();
-  if (!anew && counted == bodies.number()) return;
-  target = sums;
-  counted = bodies.number();
-}
-
-/// Without kinetic energy the multiplier is undefined: NOTHING is rounding, relative to the whole.
-void IsokineticConstraint::refuse_rest() const
-{
-  constexpr double NOTHING = 1.0e-24;
-  int turns = 0;
-  for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
-    if (bodies.rigid_of(ibody).rotational_freedoms() > 0) turns = 1;
-  turns = over_ranks(MPI_MAX, turns, world);
-
-  const double least = NOTHING * (sums.translation + sums.rotation);
-  if (least <= 0.0 ||
-      (mode == Isokinetic::SEPARATE &&
-       (sums.translation <= least || (turns && sums.rotation <= least))))
-    error->all(FLERR,
-               "Fix gear/quat isokinetic: a kinetic energy of the bodies is zero and would stay so "
-               "(translation {:g}, rotation {:g}); give them velocities first",
-               0.5 * sums.translation * force->mvv2e, 0.5 * sums.rotation * force->mvv2e);
-}
-
-double IsokineticConstraint::end_passes()
-{
-  if (counted != bodies.number()) {    // some were removed, with their energy
-    target = sums;
-    counted = bodies.number();
-  }
-  factor = scale_factors(mode, target, sums);
-  if (!scales) return 0.0;
-  return 0.5 * (sums.translation + sums.rotation - target.translation - target.rotation);
 }

@@ -30,23 +30,16 @@
 
 #include "domain.h"
 #include "gear_quat_arguments.h"
-#include "gear_quat_bodies.h"
 #include "gear_quat_cell.h"
 #include "gear_quat_chain.h"
-#include "gear_quat_exact_sum.h"
-#include "gear_quat_fields.h"
-#include "pointers.h"
+#include "gear_quat_sites.h"
 
 #include <array>
 #include <string>
 
-namespace LAMMPS_NS {
-class Fix;
-}    // namespace LAMMPS_NS
-
 namespace LAMMPS_NS::GearQuat {
 
-class Temperature : protected Pointers {
+class Temperature : protected Scene {
  public:
   enum Part { TRANSLATION, ROTATION };
   static constexpr Mask NO_TORQUE = torque_off(0) | torque_off(1) | torque_off(2);
@@ -55,7 +48,6 @@ class Temperature : protected Pointers {
     template <class V> void fields(V &v) { v(kt, kt_step); }
   };
 
-  int subtracted;             ///< fix_modify extra/dof; negative: the rule decides
   Line line;                  ///< the target of the present step
   double freedoms[2] = {};    ///< of both parts
   double twice[2] = {};       ///< twice the kinetic energies, without P^2/M
@@ -63,8 +55,7 @@ class Temperature : protected Pointers {
   double common[3] = {};      ///< V of the last sum, 0 where P is not constant
 
   /// Without keyword temp, it is the temperature for the mass of a box.
-  Temperature(LAMMPS *lmp, const Fix *fix, const Bodies &bodies, const ThermostatWords &words,
-              const PressureWords &pressure);
+  explicit Temperature(const Scene &scene);
 
   /// Counts and sums.  A run without steps keeps the last target.  anew: there are no histories.
   /// Collective.
@@ -82,7 +73,7 @@ class Temperature : protected Pointers {
   /// bodies turn only about z.
   bool has(int ibody, Part part, int component = 0) const
   {
-    const Mask off = bodies.body_at(ibody).off;
+    const Mask off = bodies.body[ibody].off;
     if (part == TRANSLATION) return component < domain->dimension && !(off & force_off(component));
     return domain->dimension == 2 ? !(off & torque_off(2)) : (off & NO_TORQUE) != NO_TORQUE;
   }
@@ -102,22 +93,15 @@ class Temperature : protected Pointers {
   /// The velocity of the flow at the center of a body.
   std::array<double, 3> flow_at(int ibody) const;
 
-  /// Atoms in no body of this fix.  Collective.
-  bigint atoms_outside() const;
-
   // after count()
 
   bool has_translation() const { return count_of[0] + count_of[1] + count_of[2] > 0.0; }
-  /// For messages: whether the total momentum counts, and why; empty if it has no directions.
-  std::string description() const;
-  /// Rank 0 prints the message if it differs from the last one.
-  void tell_once(std::string &last, const std::string &message) const;
+  /// Rank 0 prints them, unless they are as before, and whether the total momentum counts, and why.
+  void tell_freedoms(const char *of);
 
   void fields(Fields &v);
 
  private:
-  const Fix *fix;
-  const Bodies &bodies;
   const ThermostatWords &words;
   double start, stop;    ///< the target of a run
 
@@ -141,50 +125,10 @@ class Temperature : protected Pointers {
 
   static void add_to(ExactSumOf<Lanes> *sums, const Moving &moving, const Wanted &wanted);
 
+  std::string told;    ///< last message
   std::string find_outside() const;
   void find_start();
-};
-
-/// Keyword isokinetic: the sums over all bodies, of owned bodies on this rank and then of all ranks,
-/// that give the multipliers of Gauss's principle (gear_quat_friction.h), and the kinetic energy that
-/// stays constant.
-class IsokineticConstraint : protected Pointers {
- public:
-  /// rescale: after each step momenta are scaled to the kinetic energy at the start.
-  IsokineticConstraint(LAMMPS *lmp, const Bodies &bodies, Isokinetic mode, bool rescale) :
-      Pointers(lmp), bodies(bodies), mode(mode), scales(acts() && rescale)
-  {
-  }
-
-  bool acts() const { return mode != Isokinetic::NONE; }
-  const Multipliers &multipliers() const { return alpha; }
-  /// Of all forces: the rate of the heat that the constraint removes.
-  double power() const { return sums.power(); }
-
-  /// Without histories, the present kinetic energy becomes the conserved one.  Ends the run if it
-  /// is zero.  Collective.
-  void begin_run(bool anew);
-  /// From the present states and loads.  Collective.
-  void sum_present();
-  /// After the last pass; returns the kinetic energy that scale() removes.  Collective.
-  double end_passes();
-  void scale(const Integrator &integrator, const RigidBody &rigid, double *rows) const
-  {
-    if (scales) integrator.scale_momenta(rigid, factor, rows);
-  }
-
-  template <class V> void fields(V &v) { v(counted, target); }
-
- private:
-  const Bodies &bodies;
-  Isokinetic mode;
-  bool scales;    ///< momenta after a step
-
-  KineticSums sums, target;
-  Multipliers alpha, factor;
-  bigint counted = 0;    ///< number of bodies in the target
-
-  void refuse_rest() const;
+  std::string description() const;
 };
 
 }    // namespace LAMMPS_NS::GearQuat

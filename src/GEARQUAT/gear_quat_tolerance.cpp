@@ -73,14 +73,11 @@ double TimeStep::time_of(bigint step) const
 
 /* ---------------------------------------------------------------------- */
 
-Tolerance::Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
-                     double every_time, Bodies &bodies, TimeStep &time_step) :
-    Pointers(lmp),
-    fix(fix), bodies(bodies), time_step(time_step),
-    present(RememberedLoads::scheme(scheme.compensate)), control(control), every_time(every_time),
-    remembered(scheme.compensate), failed()
+Tolerance::Tolerance(const Scene &scene, TimeStep &time_step) :
+    Scene(scene), time_step(time_step), present(RememberedLoads::scheme(args.scheme.compensate)),
+    control(args.control), remembered(args.scheme.compensate), failed()
 {
-  if (control.energy) this->control.eps /= force->mvv2e;
+  if (control.energy) control.eps /= force->mvv2e;
 }
 
 /* ----------------------------------------------------------------------
@@ -121,14 +118,14 @@ double Tolerance::first_step() const
 {
   double least = std::numeric_limits<double>::infinity();
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const Body &body = bodies.body_at(ibody);
-    const BodyState &state = bodies.state_of(ibody);
+    const Body &body = bodies.body[ibody];
+    const BodyState &state = bodies.state[ibody];
     const double reach = body.reach(), size = reach > 0.0 ? reach : limit_of_motion();
     double turn[3];
-    angular_acceleration(body.rigid, state, dot4(state.q, state.q), bodies.load_of(ibody), turn);
+    angular_acceleration(body.rigid, state, dot4(state.q, state.q), bodies.load[ibody], turn);
     const double speed = length(state.velocity) + reach * length(state.omega_body);
     const double acceleration =
-        length(bodies.load_of(ibody).force) / body.rigid.mass + reach * length(turn);
+        length(bodies.load[ibody].force) / body.rigid.mass + reach * length(turn);
     const double jerk = acceleration * std::max(speed / size, std::sqrt(acceleration / size));
     if (jerk > 0.0) least = std::min(least, control.first_step(jerk, speed, body.rigid.mass));
   }
@@ -242,19 +239,14 @@ void Tolerance::note_correction(const Integrator &integrator, const Block &block
 {
   for (int k = 0; k < block.count; ++k) {
     const RigidBody &rigid = *block.bodies[k];
-    const double reach = bodies.body_at(ids[k]).reach();
+    const double reach = bodies.body[ids[k]].reach();
     const Load load = bodies.acting(ids[k]);
-    StepErrors one = remembered.finish(control, integrator, rigid, reach, load, bodies.axes(ids[k]),
-                                       predicted[k], block.rows[k], last);
+    StepErrors one =
+        remembered.finish(control, integrator, rigid, reach, load, bodies.frame[ids[k]].axes,
+                          predicted[k], block.rows[k], last);
     one.error *= control.counted(integrator, rigid, reach, load, block.rows[k]);
     include(one);
   }
-}
-
-void Tolerance::note_errors(const Bath &bath)
-{
-  for (const double error : bath.errors(control.energy, update->dt, present.values()))
-    include({error});
 }
 
 /// An upper limit for the speeds of sites on this rank.
@@ -262,8 +254,8 @@ double Tolerance::largest_speed() const
 {
   double largest = 0.0;
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
-    const BodyState &s = bodies.state_of(ibody);
-    const double speed = length(s.velocity) + bodies.body_at(ibody).reach() * length(s.omega_body);
+    const BodyState &s = bodies.state[ibody];
+    const double speed = length(s.velocity) + bodies.body[ibody].reach() * length(s.omega_body);
     largest = std::max(largest, speed);
   }
   return largest;
@@ -360,8 +352,8 @@ double Tolerance::even(double step, double now) const
   if (step <= 0.0) return step;
   const double nearest = now + ROUNDING_OF_TIME * step;    // earlier times belong to the last step
   double next = std::numeric_limits<double>::infinity();
-  if (every_time > 0.0) next = (std::floor(now / every_time) + 1.0) * every_time;
-  if (next <= nearest) next += every_time;
+  if (args.every_time > 0.0) next = (std::floor(now / args.every_time) + 1.0) * args.every_time;
+  if (next <= nearest) next += args.every_time;
   for (int n = 0; n < output->ndump; ++n) {
     if (output->mode_dump[n] == 0) continue;
     double at = output->next_time_dump[n];

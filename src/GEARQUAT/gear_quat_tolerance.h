@@ -74,7 +74,7 @@ class TimeStep : protected Pointers {
   void set(double step);
 };
 
-class Tolerance : protected Pointers {
+class Tolerance : protected Scene {
  public:
   /// Elements of the fix's vector, after the elements of Outputs, as listed in the manual.
   static constexpr int ELEMENTS = 9;
@@ -89,10 +89,7 @@ class Tolerance : protected Pointers {
     }
   };
 
-  /// scheme: of the fix, with the largest number of loads.  every_time: steps end at multiples of
-  /// this time, 0: at any time.
-  Tolerance(LAMMPS *lmp, const Fix *fix, const Scheme &scheme, const StepControl &control,
-            double every_time, Bodies &bodies, TimeStep &time_step);
+  Tolerance(const Scene &scene, TimeStep &time_step);
 
   /// The scheme with the present number of loads.
   const Scheme &scheme() const { return present; }
@@ -110,8 +107,8 @@ class Tolerance : protected Pointers {
   void note_prediction(const Block &block);
   void note_correction(const Integrator &integrator, const Block &block, const int *ids,
                        RememberedLoads::Last last);
-  /// After all bodies are corrected.
-  void note_errors(const Bath &bath);
+  /// Includes an error of other variables, in the measure of the tolerance.
+  void include(StepErrors one);
   /// After all bodies are corrected: false if the step has failed and must be repeated.
   /// Collective.
   bool accepts();
@@ -131,12 +128,9 @@ class Tolerance : protected Pointers {
   void fields(Fields &v);
 
  private:
-  const Fix *fix;
-  Bodies &bodies;
   TimeStep &time_step;
   Scheme present;
   StepControl control;
-  double every_time;
   RememberedLoads remembered;
   Growth growing = Growth::START;
   std::unique_ptr<Forces> forces;           ///< null if no step of the run can be repeated
@@ -155,7 +149,6 @@ class Tolerance : protected Pointers {
   double even(double step, double now) const;
   /// In the units of the user.
   double unit_of_error() const { return control.energy ? force->mvv2e : 1.0; }
-  void include(StepErrors one);
   double first_step() const;
   void begin_run();
 };

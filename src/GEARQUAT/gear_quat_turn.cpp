@@ -3,9 +3,7 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-#include "gear_quat_momentum.h"
-
-#include "gear_quat_math.h"
+#include "gear_quat_integrator.h"
 
 #include <algorithm>
 #include <cmath>

@@ -47,7 +47,7 @@ def pushed(size, pushed="id 5", pulled="empty", style="", fix="molecule"):
 
 
 # size of the force, atoms it acts on, atoms its opposite acts on, message, remedy
-NO_NUMBER = "meets a force that is not a finite number"
+NO_NUMBER = "meets a force or torque that is not a finite number"
 ABSURD = {
     "force": (TOO_MUCH, "id 5", "empty", NO_NUMBER, APART),
     "forces": (TOO_MUCH, "id 5", "id 6", NO_NUMBER, APART),

@@ -282,7 +282,7 @@ def test_the_start_sees_torques_that_depend_on_time(lmp_tree):
     waving = "variable wave equal sin(0.1*step)\nfix field all efield v_wave 0.0 0.0"
     assert "start of order" in lmp_tree.succeed(clustered("dipoles", after=FIELD)).log
     log = lmp_tree.succeed(clustered("dipoles", after=waving)).log
-    assert "order 2), because an external force depends on time" in log
+    assert "order 2), because forces depend on time" in log
 
 
 # --- migration ----------------------------------------------------------------------------------

@@ -71,8 +71,7 @@ pair_style hybrid/scaled v_same lj/cut 9.0 v_factor born 9.0
 pair_coeff * * lj/cut 1.0 1.5
 pair_coeff * * born 1.0 0.3 1.0 0.0 0.0
 """
-ON_TIME, OF_PAIRS = "an external force depends on time", "forces depend on time (pair style hybrid/scaled)"
-OF_ENERGY = "fix a (addforce) depends on energies or pressures"
+ON_TIME, OF_ENERGY = "forces depend on time", "forces depend on energies or pressures, which LAMMPS computes only in steps"
 ADDED = "\nfix a all addforce v_f 0.0 0.0"
 QUARTIC = """
 bond_style quartic
@@ -91,12 +90,12 @@ NOT_FOLLOWED = {
     "compute e all pe/atom\nvariable f atom 1e-3*c_e" + ADDED: OF_ENERGY,
     "compute s all stress/atom NULL\nvariable f atom 1e-6*c_s[1]" + ADDED: OF_ENERGY,
     QUARTIC: "bonds of style quartic may break",
-    SCALED.format("equal 1+0.5*sin(0.05*step)"): OF_PAIRS,
-    SCALED.format("atom 1+0.5*time*(x>0)"): OF_PAIRS,
-    SCALED.format("equal ramp(1.0,2.0)"): OF_PAIRS,
-    SCALED.format("equal 1+(step<1)"): OF_PAIRS,
-    SCALED.format("equal random(0.5,1.5,4711)"): OF_PAIRS,
-    SCALED.format("equal 1+0.001*pe"): "pair style hybrid/scaled depends on energies or pressures, which LAMMPS computes only in steps",
+    SCALED.format("equal 1+0.5*sin(0.05*step)"): ON_TIME,
+    SCALED.format("atom 1+0.5*time*(x>0)"): ON_TIME,
+    SCALED.format("equal ramp(1.0,2.0)"): ON_TIME,
+    SCALED.format("equal 1+(step<1)"): ON_TIME,
+    SCALED.format("equal random(0.5,1.5,4711)"): ON_TIME,
+    SCALED.format("equal 1+0.001*pe"): OF_ENERGY,
 }
 
 
@@ -186,7 +185,7 @@ run 1
 """
     result = lmp_tree.run(two_molecules(f"molecule start {start}", after=after))
     assert (FALLBACK in result.stdout) == (start == "bootstrap"), result.output
-    assert "blow-up in step 1, time 0.01: body 1 meets a force that is not" in result.output
+    assert "blow-up in step 1, time 0.01: body 1 meets a force or torque that is not" in result.output
 
 
 # --- several fixes -------------------------------------------------------------------------------

@@ -124,7 +124,7 @@ def test_only_periodic_directions(lmp_tree):
 @pytest.mark.parametrize("words, number, message", [
     ("", 3, "keywords of neither are in the command"),
     (WORDS, -1, "0 or more"),
-    (WORDS, 25, "extra/dof subtracts more degrees of freedom of translation than the bodies have"),
+    (WORDS, 25, "fix_modify extra/dof leave the bodies no degrees of freedom"),
 ])
 def test_numbers_that_are_refused(lmp_tree, words, number, message):
     deck = dumbbells(lmp_tree, f"fix_modify move extra/dof {number}", words)

@@ -53,7 +53,7 @@ TEST(Chain, OtherDegreesOfFreedomLeaveItsEnergyAndItsFriction)
     was.conclude();
   }
   Chain joined = was;
-  joined.join(before, more, 6.0);
+  joined.join(before, more);
   EXPECT_DOUBLE_EQ(joined.energy(more), was.energy(before));
   EXPECT_EQ(joined.friction(), was.friction());
   EXPECT_GT(std::fabs(was.energy(more) - was.energy(before)), 1.0e-2);

@@ -75,19 +75,6 @@ TEST(Limits, HalfATurnAndTheSceneInOneStep)
   }
 }
 
-TEST(Limits, LengthOfTheQuaternion)
-{
-  const MotionLimits limits(H, LENGTH);
-  for (const double part : {0.99, 1.01}) {
-    BodyState longer = at_rest(), shorter = at_rest();
-    for (double &component : longer.q) component *= part * 10.0;
-    for (double &component : shorter.q) component /= part * 10.0;
-    EXPECT_EQ(limits.keep(longer), part < 1.0);
-    EXPECT_EQ(limits.keep(shorter), part < 1.0);
-    EXPECT_TRUE(limits.keep_velocities(longer));
-  }
-}
-
 TEST(Limits, WhatIsNoNumber)
 {
   const MotionLimits limits(H, INFINITE);    // no limit in space either
@@ -101,26 +88,7 @@ TEST(Limits, WhatIsNoNumber)
       EXPECT_FALSE(limits.keep(moves));
       EXPECT_FALSE(limits.keep(turns));
     }
-    for (int k = 0; k < 4; ++k) {
-      BodyState bent = at_rest();
-      bent.q[k] = bad;
-      EXPECT_FALSE(limits.keep(bent));
-    }
   }
-}
-
-TEST(Limits, AKickIsWhatALoadMakesOfVelocities)
-{
-  const RigidBody body = {2.0, {3.0, 2.0, 1.0}};
-  BodyState s = at_rest();
-  s.velocity[1] = 5.0;
-  s.omega_body[2] = 7.0;
-  const Load load = {{4.0, 0.0, 0.0}, {6.0, 0.0, 0.0}};
-  // this q permutes the axes: x in space is z in the body
-  const BodyState after = kicked(body, s, load, 0.5);
-  const double velocity[3] = {1.0, 5.0, 0.0}, omega_body[3] = {0.0, 0.0, 10.0};
-  EXPECT_LT(Check::largest_difference(after.velocity, velocity, 3), 1e-14);
-  EXPECT_LT(Check::largest_difference(after.omega_body, omega_body, 3), 1e-14);
 }
 
 TEST(Limits, TheFastestOscillation)
