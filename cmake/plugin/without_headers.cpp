@@ -39,7 +39,7 @@ void Forces::clear()
     static_cast<Verlet *>(style)->force_clear();
 }
 
-std::vector<double> RespaForces::steps(LAMMPS *lmp)
+std::vector<double> GearQuat::respa_steps(LAMMPS *lmp)
 {
   if (!utils::strmatch(lmp->update->integrate_style, "^respa")) return {};
   const auto *levels = static_cast<const int *>(lammps_extract_global(lmp, "respa_levels"));

@@ -41,7 +41,7 @@ FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
                              [this](int vflag, double **f) {
                                tally_virial(vflag, f);
                              }),
-    driven_box(scene, step), respa(lmp)
+    driven_box(scene, step)
 {
   time_integrate = rigid_flag = 1;
   scalar_flag = vector_flag = array_flag = local_flag = 1;
@@ -263,8 +263,7 @@ void FixGearQuat::update_bodies()
 /// f, torque: from all pair styles and fixes in the previous step.
 void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
-  const auto starters = step.start(f, torque);
-  if (!starters.empty()) start_together(lmp, starters, step.length());
+  step.start(f, torque);
   driven_box.follow();
   sites.advance_densities(update->dt);
   step.begin(vflag, f);
@@ -337,18 +336,38 @@ bool FixGearQuat::is_minimized() const
   return update->whichflag == 2;
 }
 
+/// Sums the latest forces of all levels, including all fixes, where the outermost level begins or ends
+/// a step.  LAMMPS keeps the forces of the inner levels in a fix that packs for each atom 3 numbers
+/// per level: forces, then torques.  Atoms have those of the outermost level.
+bool FixGearQuat::sum_levels(int level)
+{
+  const int levels = (int) respa_steps(lmp).size(), all = 3 * levels, n = atom->nlocal;
+  if (level + 1 != levels) return false;
+  Fix *store = modify->get_fix_by_id("RESPA");
+  std::vector<double> stored(2 * (size_t) all);
+  double **const outer[] = {atom->f, atom->torque_flag ? atom->torque : nullptr};
+  for (int k = 0; k < 2; ++k) {
+    rows_of_sums[k].clear();
+    if (n == 0 || !outer[k]) continue;
+    summed[k].assign(outer[k][0], outer[k][0] + 3 * (size_t) n);
+    for (int i = 0; i < n; ++i) rows_of_sums[k].push_back(&summed[k][3 * (size_t) i]);
+  }
+  for (int i = 0; i < n; ++i) {
+    store->pack_exchange(i, stored.data());
+    for (int k = 0; k < 2 && !rows_of_sums[k].empty(); ++k)
+      for (int j = 0; j < all - 3; ++j) rows_of_sums[k][i][j % 3] += stored[(size_t) k * all + j];
+  }
+  return true;
+}
+
 void FixGearQuat::initial_integrate_respa(int vflag, int ilevel, int /*iloop*/)
 {
-  if (!respa.outermost(ilevel)) return;
-  respa.sum();
-  begin_step(vflag, respa.forces(), respa.torques());
+  if (sum_levels(ilevel)) begin_step(vflag, rows_of_sums[0].data(), rows_of_sums[1].data());
 }
 
 void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
 {
-  if (!respa.outermost(ilevel)) return;
-  respa.sum();
-  end_step(respa.forces(), respa.torques());
+  if (sum_levels(ilevel)) end_step(rows_of_sums[0].data(), rows_of_sums[1].data());
 }
 
 /* ----------------------------------------------------------------------

@@ -122,13 +122,15 @@ class FixGearQuat : public Fix {
   GearQuat::OtherFixes other_fixes;
   GearQuat::Step step;
   GearQuat::DrivenBox driven_box;
-  GearQuat::RespaForces respa;
 
   std::map<int, GearQuat::StatedMolecule> stated;    ///< of molecules of the template, by numbers
 
   GearQuat::Fields file;            ///< the numbers of a restart file that were not read yet
   int place = 0;                    ///< number of other fixes whose data of an atom precede in it
   static constexpr int HEAD = 2;    ///< numbers of an atom before its data: their count, and its ID
+
+  std::vector<double> summed[2];    ///< over levels of r-RESPA: forces, and torques of atoms
+  std::vector<double *> rows_of_sums[2];    ///< of them; empty where atoms have none
 
   // outputs
 
@@ -158,6 +160,7 @@ class FixGearQuat : public Fix {
   void put_back();
   bigint loose_atoms() const;
   void resume();
+  bool sum_levels(int level);
   void begin_step(int, double **, double **);
   void end_step(double **, double **);
   void tally_virial(int, double **);

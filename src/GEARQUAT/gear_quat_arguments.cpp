@@ -206,10 +206,6 @@ void Arguments::check_ranges()
 void Arguments::check_control()
 {
   scheme = RememberedLoads::scheme(scheme.compensate, MOST_LOADS);
-  const KeywordValue &eps = given.at("tolerance");
-  if (!(control.eps >= std::numeric_limits<double>::min()) || !std::isfinite(control.eps))
-    error->all(FLERR, "Fix gear/quat tolerance: {} times {} is too {}", eps.number, eps.unit,
-               control.eps > 1.0 ? "large" : "small");
   if (control.longest > 0.0 && control.shortest > control.longest)
     error->all(FLERR, "Fix gear/quat dtmin: {} is larger than dtmax, {}", control.shortest,
                control.longest);

@@ -39,9 +39,8 @@ struct MaskWords {
 struct KeywordValue {
   std::string text;                    ///< the first word as written
   int integer = 0;                     ///< of an INTEGER
-  double number = 0.0;                 ///< of a NUMBER, in units of `unit`
+  double number = 0.0;                 ///< of a NUMBER
   std::string measure = {};            ///< of a NUMBER, the word after it
-  double unit = 1.0;                   ///< of a NUMBER, the number after that word
   std::vector<double> numbers = {};    ///< of NUMBERS
   MaskWords mask = {};                 ///< of a MASK
 
@@ -51,9 +50,8 @@ struct KeywordValue {
 /// A row of the table of keywords.
 struct Keyword {
   /// WORD: one of some words, the first is the default; NUMBER: a positive one, optionally followed
-  /// by a word, which may have a unit, another positive number; NUMBERS: some, of which the first
-  /// `any_sign` may be negative or zero; NAME: any word that is not empty; MASK: four words, and the
-  /// keyword may be given many times.
+  /// by a word; NUMBERS: some, of which the first `any_sign` may be negative or zero; NAME: any word
+  /// that is not empty; MASK: four words, and the keyword may be given many times.
   enum Kind { WORD, INTEGER, NUMBER, NAME, MASK, NUMBERS };
   struct Range {
     int fewest, most, standard;

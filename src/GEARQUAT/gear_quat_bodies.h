@@ -101,7 +101,6 @@ class Bodies {
   Load acting(int ibody) const { return acting_load(load[ibody], body[ibody].off); }
   /// The history of a body; only for bodies that this rank moves.
   double *history(int ibody) { return rows.data() + (size_t) ibody * row_size; }
-  const double *history(int ibody) const { return rows.data() + (size_t) ibody * row_size; }
 
   void update_frame(int ibody);
   void update_frames(const std::vector<int> &list)

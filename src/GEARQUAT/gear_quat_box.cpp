@@ -106,20 +106,18 @@ bool Box::can_flip() const
   return MIGRATES || comm->nprocs == 1;
 }
 
-bool Box::is_tilted() const
+/// Of the tilts yz, xz and xy.
+std::array<int, 3> Box::flips() const
 {
-  if (!can_flip()) return false;
-  return (domain->yperiodic && flips_of(domain->yz, domain->yprd) != 0) ||
-      (domain->xperiodic &&
-       (flips_of(domain->xz, domain->xprd) != 0 || flips_of(domain->xy, domain->xprd) != 0));
+  const double *h = domain->h;
+  const int p = domain->yperiodic ? flips_of(h[3], h[1]) : 0;
+  if (!domain->xperiodic) return {p, 0, 0};
+  return {p, flips_of(h[4] + p * h[5], h[0]), flips_of(h[5], h[0])};
 }
 
 void Box::flip()
 {
-  const double *h = domain->h;
-  const int p = domain->yperiodic ? flips_of(h[3], h[1]) : 0;
-  const int n = domain->xperiodic ? flips_of(h[4] + p * h[5], h[0]) : 0;
-  const int m_xy = domain->xperiodic ? flips_of(h[5], h[0]) : 0;
+  const auto [p, n, m_xy] = flips();
   reference[3] += p * reference[1];
   reference[4] += p * reference[5] + n * reference[0];
   reference[5] += m_xy * reference[0];

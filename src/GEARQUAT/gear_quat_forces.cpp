@@ -198,28 +198,3 @@ void Forces::evaluate_styles(int eflag, int vflag)
   for (auto *fix : pre_force) fix->pre_reverse(eflag, vflag);
   if (force->newton) comm->reverse_comm();
 }
-
-/* ----------------------------------------------------------------------
-   r-RESPA
-------------------------------------------------------------------------- */
-
-/// LAMMPS keeps the forces of the inner levels in a fix that packs for each atom 3 numbers per
-/// level: forces, then torques.  Atoms have those of the outermost level.
-void RespaForces::sum()
-{
-  Fix *store = modify->get_fix_by_id("RESPA");
-  const int all = 3 * (int) steps(lmp).size(), n = atom->nlocal;
-  std::vector<double> stored(2 * (size_t) all);
-  double **const outer[] = {atom->f, atom->torque_flag ? atom->torque : nullptr};
-  for (int k = 0; k < 2; ++k) {
-    rows[k].clear();
-    if (n == 0 || !outer[k]) continue;
-    numbers[k].assign(outer[k][0], outer[k][0] + 3 * (size_t) n);
-    for (int i = 0; i < n; ++i) rows[k].push_back(&numbers[k][3 * (size_t) i]);
-  }
-  for (int i = 0; i < n; ++i) {
-    store->pack_exchange(i, stored.data());
-    for (int k = 0; k < 2 && !rows[k].empty(); ++k)
-      for (int j = 0; j < all - 3; ++j) rows[k][i][j % 3] += stored[(size_t) k * all + j];
-  }
-}

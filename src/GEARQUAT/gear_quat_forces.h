@@ -10,9 +10,7 @@
    in a list (external fields, walls, springs).  It does not follow, and reason() explains why, any
    style that moves atoms, changes their data or draws random numbers, or that depends on the time
    or on energies and pressures, which are available at steps only.  A dependence on the time is
-   measured: forces are evaluated at other steps.
-
-   The class RespaForces sums the forces of a step of r-RESPA. */
+   measured: forces are evaluated at other steps. */
 
 #ifndef LMP_GEAR_QUAT_FORCES_H
 #define LMP_GEAR_QUAT_FORCES_H
@@ -70,26 +68,8 @@ class Forces : protected Pointers {
   std::array<bigint *, 4> steps_of_tallies();
 };
 
-/// r-RESPA with one step for all levels: the forces of a step are the sum over the levels.
-class RespaForces : protected Pointers {
- public:
-  explicit RespaForces(LAMMPS *lmp) : Pointers(lmp) {}
-
-  /// The time steps of all levels, the innermost first; none without r-RESPA.
-  static std::vector<double> steps(LAMMPS *lmp);
-  /// True for the level that begins and ends a step.
-  bool outermost(int level) const { return level + 1 == (int) steps(lmp).size(); }
-  /// Sums the latest forces of all levels, including all fixes, where the outermost level begins or
-  /// ends a step.
-  void sum();
-
-  double **forces() { return rows[0].data(); }
-  double **torques() { return rows[1].data(); }    ///< null where atoms have none
-
- private:
-  std::vector<double> numbers[2];    ///< forces, and torques where atoms have some
-  std::vector<double *> rows[2];
-};
+/// The time steps of all levels of r-RESPA, the innermost first; none without r-RESPA.
+std::vector<double> respa_steps(LAMMPS *lmp);
 
 }    // namespace LAMMPS_NS::GearQuat
 

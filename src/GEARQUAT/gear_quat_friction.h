@@ -103,7 +103,7 @@ inline Multipliers scale_factors(Isokinetic mode, const KineticSums &wanted,
 ///   p' = F - damping (p - m common) - drag m common,   L' = torque - rotation L
 struct Friction {
   Upper damping;
-  Upper drag;                            ///< of a moving cell (gear_quat_cell.h)
+  Upper drag;                            ///< of a moving cell (gear_quat_box.h)
   double common[3] = {0.0, 0.0, 0.0};    ///< velocity of a motion of all bodies that does not decay
   double rotation = 0.0;
   bool implicit = false;    ///< residuals are solved for the friction that they change

@@ -77,7 +77,7 @@ const std::vector<Keyword> &GearQuat::keyword_table()
      "whether quaternions are projected to unit length"},
     {"tolerance", STEP, K::NUMBER, {"length", "energy"},
      [](A &a, const V &v) {
-       a.control.eps = v.number * v.unit;
+       a.control.eps = v.number;
        a.control.energy = v.measure == "energy";
      }, "the largest error of a step, to which the time step is adapted"},
     {"dtmin", STEP, K::NUMBER, {}, [](A &a, const V &v) { a.control.shortest = v.number; },
@@ -258,9 +258,8 @@ std::string GearQuat::alternatives(const std::vector<std::string> &words)
 std::string Keyword::required() const
 {
   if (kind == NUMBER)
-    return words.empty()
-        ? "a positive number"
-        : "a positive number and perhaps " + alternatives(words) + " and perhaps its unit";
+    return words.empty() ? "a positive number"
+                         : "a positive number and perhaps " + alternatives(words);
   if (kind == INTEGER)
     return (may_be_auto() ? "auto or " : "") + of_formulations(*this, [](const Range &range) {
              return fmt::format("{} to {}", range.fewest, range.most);
@@ -310,11 +309,7 @@ int Keyword::read(LAMMPS *lmp, int narg, char **arg, KeywordValue &value) const
     error->all(FLERR, "Fix gear/quat {}: {} is not a positive number", name, value.text);
   if (kind == NUMBER && narg > 2 && std::count(words.begin(), words.end(), arg[2])) {
     value.measure = arg[2];
-    if (narg == 3 || !utils::is_double(arg[3])) return 2;
-    if (!read_positive(arg[3], value.unit))
-      error->all(FLERR, "Fix gear/quat {}: the unit of {}, {}, is not a positive number", name,
-                 value.measure, arg[3]);
-    return 3;
+    return 2;
   }
   if (kind == NUMBERS) {
     value.numbers.resize(count);

@@ -40,7 +40,7 @@ static void refuse_steps(LAMMPS *lmp)
   const double dt = lmp->update->dt;
   if (dt == 0.0 || !std::isfinite(dt))
     lmp->error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}", dt);
-  const std::vector<double> steps = RespaForces::steps(lmp);
+  const std::vector<double> steps = respa_steps(lmp);
   for (size_t level = 1; level < steps.size(); ++level)
     if (steps[level] != steps[0])
       lmp->error->all(FLERR,
@@ -207,20 +207,14 @@ std::string Report::pairs(const Fleet &fleet) const
   const std::vector<double> label = labels(fleet);    // of atoms, including ghosts: what moves them
   const bool is_own = !meets_itself();
   const bool acts = force->pair && strcmp(force->pair_style, "zero") != 0;
-  bigint here[4] = {};                      // pairs, among still atoms, within bodies; still atoms
-  using Example = std::array<tagint, 3>;    // body, two of its atoms, whose forces are not excluded
-  std::vector<Example> found;               // the first body on this rank
+  bigint here[5] = {};    // pairs, among still atoms, within bodies; still atoms; forces in bodies
   const auto visit = [&](int i, int j, int bonded) {
     ++here[0];
     if (label[i] != label[j] || label[i] == MOVED_BY_OTHERS) return;
     ++here[label[i] == STILL ? 1 : 2];
-    if (!is_own || !acts || label[i] == STILL) return;
-    if (force->special_lj[bonded] == 0.0 && force->special_coul[bonded] == 0.0) return;
-    if (distance2(atom->x[i], atom->x[j]) >= force->pair->cutsq[atom->type[i]][atom->type[j]])
-      return;
-    const auto [one, other] = std::minmax(atom->tag[i], atom->tag[j]);
-    const Example example = {(tagint) label[i], one, other};
-    if (found.empty() || example < found[0]) found.assign(1, example);
+    here[4] += is_own && acts && label[i] != STILL &&
+        (force->special_lj[bonded] != 0.0 || force->special_coul[bonded] != 0.0) &&
+        distance2(atom->x[i], atom->x[j]) < force->pair->cutsq[atom->type[i]][atom->type[j]];
   };
   for (int which = 0; which < neighbor->nlist; ++which) {    // of pair styles in every step
     const NeighList *list = neighbor->lists[which];
@@ -237,17 +231,13 @@ std::string Report::pairs(const Fleet &fleet) const
   }
   here[3] = std::count(label.begin(), label.begin() + atom->nlocal, STILL);
   const auto all = over_ranks(MPI_SUM, here, world);
-  const auto examples = gather_sorted(found, world);
-  if (!examples.empty() && comm->me == 0) {
+  if (all[4] > 0 && comm->me == 0)
     // the energy of overlapping atoms may be so large that all others are lost in rounding
-    const auto [body, one, other] = examples.front();
     error->warning(FLERR,
-                   "Fix gear/quat {}: pair style {} acts between atoms of the same body, such as "
-                   "{} and {} of body {}; these forces do not move bodies, but they take time and "
-                   "add a constant to the energy, which is large where atoms overlap; the line "
-                   "that leaves them out: {}",
-                   fix->id, force->pair_style, one, other, body, exclude_own());
-  }
+                   "Fix gear/quat {}: pair style {} acts between {} pairs of atoms within bodies; "
+                   "these forces do not move bodies, but they take time and add a constant to the "
+                   "energy, which is large where atoms overlap; the line that leaves them out: {}",
+                   fix->id, force->pair_style, all[4], exclude_own());
 
   std::string text;
   const auto add = [&](bigint some, const std::string &what, const std::string &line) {

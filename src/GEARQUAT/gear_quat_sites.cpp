@@ -252,9 +252,11 @@ static bool near(const double *a, const Sites::Expected &expected)
   return true;
 }
 
-bool Sites::is_there(const Site &site) const
+double Sites::displacement(const Site &site) const
 {
-  return near(atom->x[site.atom], expected_position(site));
+  const Expected there = expected_position(site);
+  const double *x = atom->x[site.atom];
+  return near(x, there) ? 0.0 : std::sqrt(distance2(x, there.value));
 }
 
 bool Sites::is_as_fast(const Site &site) const
@@ -269,13 +271,7 @@ bool Sites::is_as_fast(const Site &site) const
 double Sites::farthest() const
 {
   double here = 0.0;
-  for (const Site &site : sites) {
-    if (is_there(site)) continue;
-    double apart[3];
-    const Expected there = expected_position(site);
-    for (int k = 0; k < 3; ++k) apart[k] = atom->x[site.atom][k] - there.value[k];
-    here = std::max(here, length(apart));
-  }
+  for (const Site &site : sites) here = std::max(here, displacement(site));
   return over_ranks(MPI_MAX, here, world);
 }
 
@@ -284,7 +280,7 @@ bool Sites::any_changes() const
   int here = 0;
   for (const Site &site : sites) {
     const int i = site.atom;
-    if (!is_there(site) || !is_as_fast(site) || ownership.has_other_mass(i) ||
+    if (displacement(site) != 0.0 || !is_as_fast(site) || ownership.has_other_mass(i) ||
         !extended.match(i, ownership.mass_of(i), bodies, site.body))
       here = 1;
   }

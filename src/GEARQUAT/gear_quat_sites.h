@@ -75,9 +75,9 @@ class Sites : protected Pointers {
   // site: one of this list
   Expected expected_position(const Site &site) const;
   Expected expected_velocity(const Site &site) const;
-  // True if position or velocity of the atom match its body, up to rounding of coordinates and
-  // velocities, relative to box and body.
-  bool is_there(const Site &site) const;
+  /// The distance of the atom from its place in its body; 0 up to rounding, relative to box and body.
+  double displacement(const Site &site) const;
+  /// True if the velocity of the atom matches its body, up to rounding.
   bool is_as_fast(const Site &site) const;
 
   /// The number of periods between the unwrapped and the wrapped position of an atom of a body.

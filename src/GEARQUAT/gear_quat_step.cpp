@@ -113,6 +113,10 @@ void Step::begin_run()
   const double h = length();
   bath.begin_run(!started, tolerance ? std::min(h, bath.longest_step()) : h);
   if (update->nsteps > 0) note_rates(edge_rate * std::fabs(h));
+  if (update->nsteps > 0 && !started) {    // before anything has changed
+    find_limits(h);
+    watch_all(atom->f);
+  }
   phase = Phase::SET_UP;
 }
 
@@ -140,9 +144,9 @@ void Step::end_run()
    which histories continue
 ------------------------------------------------------------------------- */
 
-std::vector<Step *> Step::start(double **f, double **torque)
+void Step::start(double **f, double **torque)
 {
-  if (phase != Phase::SET_UP) return {};
+  if (phase != Phase::SET_UP) return;
   for (Step *one : fleet.members) one->sites.gather_loads(f, torque);
   // histories that could continue start with the others: one polynomial has the forces of all
   std::vector<Step *> together;
@@ -164,8 +168,7 @@ std::vector<Step *> Step::start(double **f, double **torque)
       one->note_start();
     }
   }
-  if (starts == 0) return {};
-  return together;
+  if (starts > 0) start_together(lmp, together, length());
 }
 
 /// Returns null if the histories can continue.  Collective.

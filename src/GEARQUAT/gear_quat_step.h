@@ -112,9 +112,8 @@ class Step : public Scene {
 
   // a step; f, torque: of atoms; all collective
 
-  /// f, torque: of the previous step, from all pair styles and fixes.  Returns the fixes that begin
-  /// together with a start of full order, none if all histories can continue.
-  std::vector<Step *> start(double **f, double **torque);
+  /// f, torque: of the previous step, from all pair styles and fixes.
+  void start(double **f, double **torque);
   void begin(int vflag, double **f);
   /// f, torque: of the predicted sites.
   void end(double **f, double **torque);

@@ -275,7 +275,7 @@ void OtherFixes::watch_places() const
 {
   if (watched.empty()) return;
   for (const Site &site : sites)
-    if (!sites.is_there(site))
+    if (sites.displacement(site) != 0.0)
       error->one(FLERR,
                  "Fix gear/quat: {} has moved atom {} of body {} in step {}, and bodies do not "
                  "follow; {}",

@@ -30,7 +30,6 @@
 
 #include "domain.h"
 #include "gear_quat_arguments.h"
-#include "gear_quat_cell.h"
 #include "gear_quat_chain.h"
 #include "gear_quat_sites.h"
 

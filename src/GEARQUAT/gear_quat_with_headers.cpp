@@ -30,7 +30,7 @@ using namespace GearQuat;
    run styles
 ------------------------------------------------------------------------- */
 
-std::vector<double> RespaForces::steps(LAMMPS *lmp)
+std::vector<double> GearQuat::respa_steps(LAMMPS *lmp)
 {
   const auto *respa = dynamic_cast<Respa *>(lmp->update->integrate);
   if (!respa) return {};

@@ -49,7 +49,7 @@ class Keyword:
 
     @property
     def options(self):
-        """Words that may follow the number of a keyword; a second number, the unit, may follow the word."""
+        """Words that may follow the number of a keyword."""
         return tuple(self.values.split(" and perhaps ")[1].split(" or ")) if " and perhaps " in self.values else ()
 
     @property

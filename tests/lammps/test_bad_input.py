@@ -41,11 +41,9 @@ ARGUMENTS = {
     "molecule dtmin 0.1": "keyword dtmin requires keyword tolerance",
     "molecule tolerance 1e-8 dtmin 0.2 dtmax 0.1": "dtmin: 0.2 is larger than dtmax, 0.1",
     "molecule tolerance 1e-8 enrgy": "keyword: enrgy; tolerance takes a positive number and "
-    "perhaps length or energy and perhaps its unit; the keywords are formulation, values",
+    "perhaps length or energy; the keywords are formulation, values",
     "molecule temp 1 1 0.1 5": "keyword: 5; temp takes Tstart Tstop Tdamp; the keywords are",
-    "molecule tolerance 1e-8 energy 0": "the unit of energy, 0, is not a positive number",
     "molecule tolerance 1e-8 length nan": "Unknown fix gear/quat keyword: nan",
-    "molecule tolerance 1e-200 length 1e-200": "tolerance: 1e-200 times 1e-200 is too small",
     "molecule infile nosuch": "cannot open file nosuch",
     'molecule infile ""': "infile: the value is an empty word",
     "molecule infile bodies reinit yes": "reinit yes cannot be used with infile",

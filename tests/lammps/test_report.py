@@ -225,7 +225,7 @@ def test_atoms_at_the_same_place_are_a_point(lmp_tree):
 
 
 # --- pairs within bodies that interact ------------------------------------------------------------
-ACTS = re.compile(r"WARNING: .*: pair style (\S+) acts between atoms of the same body, such as (\d+) and (\d+) of body (\d+);")
+ACTS = re.compile(r"WARNING: .*: pair style (\S+) acts between \d+ pairs of atoms within bodies;")
 REMEDY = re.compile(r"the line that leaves them out(?: \([^)]*\))?: (.*?) \(src")
 
 
@@ -238,7 +238,7 @@ def dioxide(lmp, before="", fix="gear/quat molecule", pair=LENNARD_JONES, run="r
 @pytest.mark.parametrize("words, ranks", [("molecule", 2), ("molecule report no", 1)])
 def test_pairs_within_bodies_that_interact_are_named_and_mended(lmp_tree, words, ranks):
     first = lmp_tree.succeed(dioxide(lmp_tree, fix=f"gear/quat {words}"), ranks=ranks)
-    assert ACTS.findall(first.output) == [("lj/cut", "1", "2", "1")]
+    assert ACTS.findall(first.output) == ["lj/cut"]
     ((line),) = REMEDY.findall(first.output)
     assert line == "neigh_modify exclude molecule/intra all"
     ends = [last_frame(lmp_tree.folder / "poses.dump")]
@@ -260,7 +260,7 @@ def test_the_remedy_for_each_body_style(lmp_tree):
     ):
         deck = placed(bodies, fix=f"gear/quat {words}", before=pair, run="run 2", steps=2, exclude="")
         result = lmp_tree.succeed(deck)
-        assert ACTS.findall(result.output) == [("lj/cut", "1", "2", "1")]
+        assert ACTS.findall(result.output) == ["lj/cut"]
         assert REMEDY.findall(result.output) == [line]
         mended = lmp_tree.succeed(deck.replace("fix move all", f"{line}\nfix move all"))
         assert not ACTS.search(mended.output)

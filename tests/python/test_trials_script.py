@@ -192,9 +192,6 @@ def test_every_keyword_of_the_fix_is_read():
         assert bool(script.for_trials(line)[1]) == (row.about == "step")
     line = parse("fix 1 all gear/quat molecule tolerance 1e-9 energy values 7")
     assert line.keywords == (("tolerance", ("1e-9", "energy")), ("values", ("7",)))
-    line = parse("fix 1 all gear/quat molecule tolerance 1e-9 length 3.4e-10 every/time 2 values 7")
-    assert line.keywords[0] == ("tolerance", ("1e-9", "length", "3.4e-10"))
-    assert line.keywords[1:] == (("every/time", ("2",)), ("values", ("7",)))
 
 
 def test_words_that_need_quotes_get_them():

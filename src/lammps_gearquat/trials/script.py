@@ -275,7 +275,7 @@ def parse_fix(words):
             given = [pair for pair in given if pair[0] != key]
         end = known[key] + 1
         if rest[end : end + 1] and rest[end] in options.get(key, ()):
-            end += 2 if rest[end + 1 : end + 2] and rest[end + 1] not in known else 1
+            end += 1
         given.append((key, tuple(rest[1:end])))
         rest = rest[end:]
     return FixLine(id_, group, style, body, tuple(given))
