@@ -46,43 +46,37 @@ int Arguments::parse_bodystyle(int narg, char **arg)
     error->all(FLERR, "Fix gear/quat keywords only lists the keywords, and no fix was made");
   }
   given["bodystyle"].text = style;
-
-  if (style == "single") {
-    bodystyle = BodyStyle::SINGLE;
-    return next;
-  }
-  if (style == "molecule") {
-    bodystyle = BodyStyle::MOLECULE;
-    return next;
-  }
-  if (style == "custom") {
-    bodystyle = BodyStyle::CUSTOM;
-    if (narg <= next) error->all(FLERR, "Fix gear/quat custom: i_name or v_name is missing");
+  static const std::map<std::string, BodyStyle> STYLES = {{"single", BodyStyle::SINGLE},
+                                                          {"molecule", BodyStyle::MOLECULE},
+                                                          {"group", BodyStyle::GROUP},
+                                                          {"custom", BodyStyle::CUSTOM}};
+  const auto found = STYLES.find(style);
+  if (found == STYLES.end())
+    error->all(FLERR, "Unknown fix gear/quat bodystyle: {} (single, molecule, group or custom)",
+               style);
+  bodystyle = found->second;
+  if (bodystyle == BodyStyle::SINGLE || bodystyle == BodyStyle::MOLECULE) return next;
+  if (narg <= next)
+    error->all(FLERR, "Fix gear/quat {}: {}", style,
+               bodystyle == BodyStyle::CUSTOM ? "i_name or v_name is missing"
+                                              : "N is missing; required: N ID1 ID2 ...");
+  if (bodystyle == BodyStyle::CUSTOM) {
     custom = arg[next];
     return next + 1;
   }
-  if (style == "group") {
-    bodystyle = BodyStyle::GROUP;
-    if (narg <= next)
-      error->all(FLERR, "Fix gear/quat group: N is missing; required: N ID1 ID2 ...");
-    int n;
-    if (!read_integer(arg[next], n) || n <= 0)
-      error->all(FLERR,
-                 "Fix gear/quat group: number of groups is {} and must be a positive integer",
-                 arg[next]);
-    if (narg - next - 1 < n)
-      error->all(FLERR, "Fix gear/quat group: {} group IDs expected, {} given", arg[next],
-                 narg - next - 1);
-    for (int i = 0; i < n; ++i) {
-      groups.emplace_back(arg[next + 1 + i]);
-      if (group->find(groups.back()) < 0)
-        error->all(FLERR, "Fix gear/quat group: group ID {} does not exist", groups.back());
-    }
-    return next + 1 + n;
+  int n;
+  if (!read_integer(arg[next], n) || n <= 0)
+    error->all(FLERR, "Fix gear/quat group: number of groups is {} and must be a positive integer",
+               arg[next]);
+  if (narg - next - 1 < n)
+    error->all(FLERR, "Fix gear/quat group: {} group IDs expected, {} given", arg[next],
+               narg - next - 1);
+  for (int i = 0; i < n; ++i) {
+    groups.emplace_back(arg[next + 1 + i]);
+    if (group->find(groups.back()) < 0)
+      error->all(FLERR, "Fix gear/quat group: group ID {} does not exist", groups.back());
   }
-  error->all(FLERR, "Unknown fix gear/quat bodystyle: {} (single, molecule, group or custom)",
-             style);
-  return 0;
+  return next + 1 + n;
 }
 
 /* ----------------------------------------------------------------------

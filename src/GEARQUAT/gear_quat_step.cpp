@@ -501,9 +501,10 @@ void Step::predict(double **f)
   const double h = integrator->step();
   time_step.begin();
   find_limits(h);
+  const bool may_repeat = tolerance && std::fabs(h) > args.control.shortest;
   const auto check = [&](int ibody) {
     const BodyState &state = bodies.state[ibody];
-    if (!tolerance && !limits.keep(state)) stop(ibody, state, h, f);
+    if (!may_repeat && !limits.keep(state)) stop(ibody, state, h, f);
   };
   constexpr int WIDTH = Scheme::SECOND_WIDTH;    // with velocities of half a step before
   std::array<double, 2 * WIDTH> half;
