@@ -10,7 +10,7 @@ from support.scene_files import read_atoms
 from support.running import EXAMPLES
 
 MOTIONS = ("momentum", "second", "first", "rigid")
-METHODS = ("gear", "rigid", "rigid_big", "rigid_verlet")
+METHODS = ("gear", "rigid")
 ENERGY = {1: -0.72360304, 2: -0.72360304, 3: 3.99270832}
 
 
