@@ -378,7 +378,7 @@ void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
 /// part in their first run: until then, as for fix rigid, all degrees of freedom of atoms count.
 bigint FixGearQuat::dof(int tgroup)
 {
-  if (update->whichflag == 0 && !step.had_run()) return 0;
+  if (update->whichflag != 1 && !step.had_run()) return 0;
   const Comparison found = ownership.count_atoms(group->bitmask[tgroup]);
   if (found.divided && !(told_of_groups & group->bitmask[tgroup])) {
     told_of_groups |= group->bitmask[tgroup];

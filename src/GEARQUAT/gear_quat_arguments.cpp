@@ -73,8 +73,7 @@ int Arguments::parse_bodystyle(int narg, char **arg)
                narg - next - 1);
   for (int i = 0; i < n; ++i) {
     groups.emplace_back(arg[next + 1 + i]);
-    if (group->find(groups.back()) < 0)
-      error->all(FLERR, "Fix gear/quat group: group ID {} does not exist", groups.back());
+    find_group("group", groups.back());
   }
   return next + 1 + n;
 }
@@ -275,12 +274,23 @@ void Arguments::check_pressure()
    atoms to bodies
 ------------------------------------------------------------------------- */
 
+/// Index of a group that exists and is static.
+int Arguments::find_group(const char *keyword, const std::string &name) const
+{
+  const int found = group->find(name);
+  if (found < 0) error->all(FLERR, "Fix gear/quat {}: group ID {} does not exist", keyword, name);
+  if (group->dynamic[found])
+    error->all(FLERR,
+               "Fix gear/quat {}: group {} is dynamic, but bodies keep their atoms; use a static "
+               "group",
+               keyword, name);
+  return found;
+}
+
 std::vector<tagint> Arguments::body_ids(int groupbit) const
 {
   if (points.empty()) return ids_by_style({groupbit, 0});
-  const int igroup = group->find(points);
-  if (igroup < 0) error->all(FLERR, "Fix gear/quat points: group ID {} does not exist", points);
-  const int bit = group->bitmask[igroup];
+  const int bit = group->bitmask[find_group("points", points)];
   auto ids = ids_by_style({groupbit, bit});
   tagint worst[3] = {0, 0, 0};    // an ID, an atom outside of the group, and the largest point
   for (int i = 0; i < atom->nlocal; ++i) {

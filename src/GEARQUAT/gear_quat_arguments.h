@@ -224,6 +224,7 @@ struct Arguments : protected Pointers {
     int group, points;    ///< bits of groups
     bool has(int mask) const { return (mask & group) && !(mask & points); }
   };
+  int find_group(const char *keyword, const std::string &name) const;
   std::vector<tagint> ids_by_style(const Selection &selection) const;
   std::vector<tagint> molecule_ids(const Selection &selection) const;
   std::vector<tagint> group_ids(const Selection &selection) const;

@@ -141,12 +141,10 @@ void Ownership::recreate()
   if (changed)
     error->all(
         FLERR,
-        "Fix gear/quat: body {} has another shape than before: image flags of its atoms have to "
-        "change "
-        "together (set image, read_dump or rerun with ix iy iz), and change_box moves each atom by "
-        "itself, while fix deform moves bodies as a whole; to keep this shape, define the fix "
-        "after "
-        "the change",
+        "Fix gear/quat: body {} has another shape than before: some of its atoms were displaced, "
+        "their image flags did not change together (set image, read_dump or rerun with ix iy iz), "
+        "or change_box moved each atom by itself, while fix deform moves bodies as a whole; to "
+        "keep this shape, define the fix after the change",
         changed);
 }
 
@@ -178,8 +176,9 @@ void Ownership::check_whole()
   if (const tagint broken = count_atoms().broken)
     error->all(FLERR,
                "Fix gear/quat: body {} has lost some of its atoms; a body must be removed as a "
-               "whole, and no atom of it may leave the box through a face that is not periodic, as "
-               "it does if the time step is too long or atoms overlap",
+               "whole, no edge of a box at constant pressure may become shorter than it, and no "
+               "atom of it may leave the box through a face that is not periodic, as it does if "
+               "the time step is too long or atoms overlap",
                broken);
   follow_atom_ids();
 }

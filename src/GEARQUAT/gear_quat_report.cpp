@@ -235,9 +235,13 @@ std::string Report::pairs(const Fleet &fleet) const
     // the energy of overlapping atoms may be so large that all others are lost in rounding
     error->warning(FLERR,
                    "Fix gear/quat {}: pair style {} acts between {} pairs of atoms within bodies; "
-                   "these forces do not move bodies, but they take time and add a constant to the "
-                   "energy, which is large where atoms overlap; the line that leaves them out: {}",
-                   fix->id, force->pair_style, all[4], exclude_own());
+                   "{}; the line that leaves them out: {}",
+                   fix->id, force->pair_style, all[4],
+                   known_pair(Fact::RANDOM | Fact::DISSIPATIVE, force)
+                       ? "their friction may brake the rotation of bodies"
+                       : "these forces do not move bodies, but they take time and add a constant "
+                         "to the energy, which is large where atoms overlap",
+                   exclude_own());
 
   std::string text;
   const auto add = [&](bigint some, const std::string &what, const std::string &line) {

@@ -103,9 +103,9 @@ std::string Temperature::find_outside() const
   if (others > 0) return fmt::format("{} atoms are in no body of this fix", others);
   const auto with_forces = fixes_with_forces(lmp, fix);
   if (!with_forces.empty()) return name_of(with_forces.front()) + " may exert forces";
+  if (words.takes_in) return "keyword mol takes in bodies that other fixes insert";
   for (const auto *other : modify->get_fix_list())
-    if (!words.takes_in && known(Fact::EXCHANGE, other))
-      return name_of(other) + " may insert atoms";
+    if (known(Fact::EXCHANGE, other)) return name_of(other) + " may insert atoms";
   if (known_pair(Fact::BACKGROUND, lmp->force))
     return std::string("pair style ") + lmp->force->pair_style + " exerts forces from outside";
   return "";

@@ -245,6 +245,9 @@ def test_dynamic_group(lmp_tree):
     deck = two_molecules().replace("fix move all", group)
     lmp_tree.refuse(deck.format(words="dynamic all region some every 1"), "group some is dynamic, but bodies keep their atoms")
     lmp_tree.succeed(deck.format(words="region some"))
+    for words in ("molecule points some", "group 1 some"):
+        late = two_molecules(words, before=group.split("\n")[0] + "\ngroup some dynamic all region some every 1")
+        lmp_tree.refuse(late, "group some is dynamic, but bodies keep their atoms")
 
 
 def test_group_that_becomes_dynamic(lmp_tree):

@@ -87,6 +87,12 @@ def test_minimum(lmp_wheel, style, most):
     assert stretch(x) < 1e-12
 
 
+def test_temperature_before_the_first_run(lmp_wheel):
+    """As created: bodies adopt the velocities of their atoms in a run, so all degrees of freedom of atoms count."""
+    after = f"velocity all create 1.3 4711\nthermo_style custom step temp fnorm\n{MINIMIZE}"
+    assert np.array(lmp_wheel.succeed(scene(after)).thermo[0]["Temp"]) == pytest.approx(1.3, rel=1e-9)
+
+
 def test_same_minimum_on_two_ranks(lmp_wheel):
     found = []
     for ranks in (1, 2):

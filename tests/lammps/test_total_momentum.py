@@ -143,6 +143,13 @@ def test_atoms_outside_and_another_fix(lmp_tree):
     assert "because 1 atoms are in no body of this fix" in log and "because 10 atoms" in log
 
 
+def test_bodies_that_other_fixes_insert_bring_momentum(lmp_tree):
+    """A stream of inserted bodies would otherwise drift for good."""
+    log = lmp_tree.succeed(dumbbells(lmp_tree, words=f"{WORDS} mol d")).log
+    assert said(log) == [(24, "", 16)]
+    assert "because keyword mol takes in bodies that other fixes insert" in log
+
+
 def test_held_bodies_count(lmp_tree):
     """A body that keyword force holds exerts forces on the others, in the directions in which it is held."""
     log = lmp_tree.succeed(dumbbells(lmp_tree, words=f"{WORDS} force 1 off on on")).log
