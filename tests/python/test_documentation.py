@@ -88,7 +88,7 @@ def test_a_list_that_is_cut_off_is_no_list():
 
 
 def test_every_bodystyle_is_documented():
-    styles = set(re.findall(r'style == "(\w+)"', ARGUMENTS)) - {"keywords"}
+    styles = set(re.findall(r'\{"(\w+)", BodyStyle::', ARGUMENTS))
     line = re.search(r"^\* bodystyle = (.*)$", section("Syntax"), re.M)[1]
     assert set(re.findall(r"\*(\w+)\*", line)) == styles
     assert len(styles) == 4
