@@ -37,11 +37,9 @@ using namespace GearQuat;
 FixGearQuat::FixGearQuat(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), args(lmp, narg, arg), bodies(args.scheme), ownership(lmp, this, bodies),
     sites(lmp, bodies, ownership), scene(lmp, this, args, bodies, ownership, sites),
-    other_fixes(scene), step(scene, fleet, other_fixes,
-                             [this](int vflag, double **f) {
-                               tally_virial(vflag, f);
-                             }),
-    driven_box(scene, step)
+    step(scene, fleet, [this](int vflag, double **f) {
+      tally_virial(vflag, f);
+    })
 {
   time_integrate = rigid_flag = 1;
   scalar_flag = vector_flag = array_flag = local_flag = 1;
@@ -126,23 +124,19 @@ void FixGearQuat::init()
   fleet.members.clear();
   for (auto *other : modify->get_fix_list())
     if (auto *same = dynamic_cast<FixGearQuat *>(other)) fleet.members.push_back(&same->step);
-  refuse_scene(lmp, scene, fleet);
+  step.refuse_scene();
   if (is_minimized()) {
-    driven_box.rest();
+    driver = nullptr;
     refuse_minimizer();
     return;
   }
-  driven_box.init();
+  find_driver();
   if (ecouple_flag && thermo_energy)
     error->all(FLERR,
                "Fix gear/quat {} cannot be used with fix_modify energy yes: the scalar has the "
                "energy of the thermostat, too, which thermo keyword econserve adds; leave it out",
                args.thermostat.damp > 0.0 ? args.thermostat.keyword() : "with a pressure");
-  other_fixes.init();
-  if (!step.had_run()) {
-    stated = read_stated(lmp, args.mol);
-    other_fixes.warn_of_noise();
-  }
+  if (!step.had_run()) stated = read_stated(lmp, args.mol);
   step.init();
   step.velocities_read = !reader_of_predicted_velocities(lmp, this).empty();
 }
@@ -151,14 +145,7 @@ void FixGearQuat::init()
 void FixGearQuat::deform(int flag)
 {
   if (flag == 0 && is_minimized()) put_back_poses();
-  flag == 0 ? ownership.note_box() : driven_box.end_remap();
-}
-
-void FixGearQuat::setup_pre_exchange()
-{
-  for (int i = 0; atom->vest && i < atom->nlocal; ++i)    // no fix extrapolates the first ones
-    if (ownership.in_body(i)) std::copy_n(atom->v[i], 3, atom->vest[i]);
-  driven_box.begin_setup();
+  flag == 0 ? ownership.note_box() : remap_bodies();
 }
 
 /// Bodies keep their state between runs, and adopt changes that the user has made in the atoms.
@@ -166,13 +153,13 @@ void FixGearQuat::setup_pre_neighbor()
 {
   ownership.check_whole();
   update_bodies();
-  driven_box.follow_images();
+  follow_images();
   const bool defined = step.phase == Phase::DEFINED;
   const bool takes_over = args.infile.empty() && stated.empty() && (args.reinit || defined);
   if (takes_over && sites.any_changes()) {
     sites.take_out_flow();
     ownership.recreate();
-    driven_box.note_images();
+    note_images();
     update_bodies();
     step.forget("Fix gear/quat: atoms were changed since the last run; bodies are rebuilt from "
                 "them");
@@ -211,14 +198,14 @@ void FixGearQuat::setup(int vflag)
   const bool first = !step.had_run();
   ownership.spread_states();
   sites.gather_loads(atom->f, atom->torque);
-  driven_box.follow();
+  follow_change();
   step.begin_run();
   step.bath.measure_virial(atom->f);
   sites.place_velocities();
   bodies.forget_work();    // positions belong to the corrected poses
   tally_virial(vflag, atom->f);
   show_bodies();
-  if (first) report_scene(lmp, scene, fleet);
+  if (first) step.report();
   loose = loose_atoms();
 }
 
@@ -245,8 +232,8 @@ void FixGearQuat::pre_exchange()
 void FixGearQuat::pre_neighbor()
 {
   update_bodies();
-  driven_box.follow_images();
-  if (driven_box.any()) ownership.note_box();    // fix deform may have flipped the box
+  follow_images();
+  if (driver) ownership.note_box();    // fix deform may have flipped the box
   count_rows();
 }
 
@@ -264,7 +251,7 @@ void FixGearQuat::update_bodies()
 void FixGearQuat::begin_step(int vflag, double **f, double **torque)
 {
   step.start(f, torque);
-  driven_box.follow();
+  follow_change();
   sites.advance_densities(update->dt);
   step.begin(vflag, f);
 }
@@ -294,7 +281,10 @@ void FixGearQuat::post_run()
     return;
   }
   step.end_run();
-  driven_box.end_run();
+  if (driver) {
+    follow_change();
+    place_in_box();
+  }
   const bigint more = loose_atoms() - loose;
   if (more > 0 && comm->me == 0)
     error->warning(FLERR,

@@ -22,7 +22,6 @@ FixStyle(gear/quat,FixGearQuat);
 
 #include "gear_quat_arguments.h"
 #include "gear_quat_assembly.h"
-#include "gear_quat_driven.h"
 #include "gear_quat_fields.h"
 #include "gear_quat_forces.h"
 #include "gear_quat_step.h"
@@ -119,9 +118,7 @@ class FixGearQuat : public Fix {
   GearQuat::Ownership ownership;
   GearQuat::Sites sites;
   GearQuat::Scene scene;
-  GearQuat::OtherFixes other_fixes;
   GearQuat::Step step;
-  GearQuat::DrivenBox driven_box;
 
   std::map<int, GearQuat::StatedMolecule> stated;    ///< of molecules of the template, by numbers
 
@@ -131,6 +128,18 @@ class FixGearQuat : public Fix {
 
   std::vector<double> summed[2];    ///< over levels of r-RESPA: forces, and torques of atoms
   std::vector<double *> rows_of_sums[2];    ///< of them; empty where atoms have none
+
+  // a box that another fix changes
+
+  const Fix *driver = nullptr;    ///< that fix in this run
+  void find_driver();
+  void remap_bodies();
+  void move_center(int ibody, const double *way);
+  void place_in_box();
+  void follow_change();
+  void pass_faces(int ibody, const double *images);
+  void note_images();
+  void follow_images();
 
   // outputs
 

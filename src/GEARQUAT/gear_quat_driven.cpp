@@ -3,13 +3,20 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-#include "gear_quat_driven.h"
+/* A box that another fix changes during a run (doc/theory.md, Boxes that other commands change).
 
-#include "gear_quat_arguments.h"
+   A fix that remaps atoms with the box notifies the rigid fixes before and after (Fix::deform()).
+   Then the centers of mass are remapped, and bodies keep their shapes, orientations and velocities:
+   an error of first order, as with fix rigid.
+
+   If the box changes without a remap, atoms do not move.  The center of mass of a body, which is
+   unwrapped, stays with its owner atom, and the other images of the body move with the box.  With
+   fix deform remap v a body gets the velocity of the image beyond a face when its owner atom
+   crosses it, and each atom has the velocity of its own image, like LAMMPS' atoms. */
+
+#include "fix_gear_quat.h"
+
 #include "gear_quat_box.h"
-#include "gear_quat_ranks.h"
-#include "gear_quat_step.h"
-#include "gear_quat_styles.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -36,11 +43,12 @@ static bool changes_box(const Fix *one)
   return one->box_change & (Fix::BOX_CHANGE_SIZE | Fix::BOX_CHANGE_SHAPE);
 }
 
-void DrivenBox::init()
+/// Ends the run if another fix changes the box in a way that bodies cannot follow.
+void FixGearQuat::find_driver()
 {
   driver = nullptr;
   for (const auto *other : modify->get_fix_list()) {
-    if (other == fix || !changes_box(other)) continue;
+    if (other == this || !changes_box(other)) continue;
     driver = other;
     if (!known(Fact::CARRIES_BODIES, other))
       error->all(FLERR,
@@ -71,7 +79,8 @@ void DrivenBox::init()
    atoms are remapped with the box
 ------------------------------------------------------------------------- */
 
-void DrivenBox::end_remap()
+/// Another fix has remapped atoms with the box, from Ownership::box().
+void FixGearQuat::remap_bodies()
 {
   const double *before = ownership.box().data();
   for (int ibody = 0; ibody < bodies.nmoved(); ++ibody) {
@@ -81,11 +90,11 @@ void DrivenBox::end_remap()
     for (int k = 0; k < 3; ++k) way[k] = moved[k] - center[k];
     move_center(ibody, way);
   }
-  place_sites();
+  place_in_box();
 }
 
 /// Moves the centers of the state and of the history.
-void DrivenBox::move_center(int ibody, const double *way)
+void FixGearQuat::move_center(int ibody, const double *way)
 {
   double *center = bodies.state[ibody].center;
   for (int k = 0; k < 3; ++k) center[k] += way[k];
@@ -94,7 +103,7 @@ void DrivenBox::move_center(int ibody, const double *way)
   for (int k = 0; k < 3; ++k) row[k] += way[k];
 }
 
-void DrivenBox::place_sites()
+void FixGearQuat::place_in_box()
 {
   ownership.spread_moved();
   sites.place(false);
@@ -105,7 +114,8 @@ void DrivenBox::place_sites()
    atoms do not move
 ------------------------------------------------------------------------- */
 
-void DrivenBox::follow()
+/// Before a step, and when the box may have changed without a remap.
+void FixGearQuat::follow_change()
 {
   const auto &box = ownership.box();
   if (!driver || std::equal(domain->h, domain->h + 6, box.begin())) return;
@@ -120,7 +130,7 @@ void DrivenBox::follow()
 
 /// The body keeps its velocity relative to the faces that its owner atom has crossed since the last
 /// call, also if fix deform has flipped the box.  images: of the owner atom, now.
-void DrivenBox::pass_faces(int ibody, const double *images)
+void FixGearQuat::pass_faces(int ibody, const double *images)
 {
   const double *rates = step.phase == Phase::BEGUN ? domain->h_rate : sites.rates_of_faces().data();
   double away[2][3], periods[3], velocity[3];
@@ -141,7 +151,7 @@ void DrivenBox::pass_faces(int ibody, const double *images)
 }
 
 /// Every rank changes the same body in the same way.
-void DrivenBox::follow_images()
+void FixGearQuat::follow_images()
 {
   if (!driver) return;
   std::vector<Load> found(bodies.nhere());    // images, and whether faces change the velocity
@@ -161,7 +171,8 @@ void DrivenBox::follow_images()
   }
 }
 
-void DrivenBox::note_images()
+/// Bodies were made again.
+void FixGearQuat::note_images()
 {
   for (int ibody = 0; ibody < bodies.nowned(); ++ibody)
     bodies.body[ibody].image = sites.image_of({ownership.owner_of(ibody), ibody, {}});
@@ -170,8 +181,10 @@ void DrivenBox::note_images()
 /// A moving box that another command has changed begins again.
 /// LAMMPS would wrap the atoms of bodies with the present motion of the faces, instead of the motion
 /// with which their velocities were placed.
-void DrivenBox::begin_setup()
+void FixGearQuat::setup_pre_exchange()
 {
+  for (int i = 0; atom->vest && i < atom->nlocal; ++i)    // no fix extrapolates the first ones
+    if (ownership.in_body(i)) std::copy_n(atom->v[i], 3, atom->vest[i]);
   const auto &box = ownership.box();
   if (args.pressure.any() &&
       !(std::equal(domain->h, domain->h + 6, box.begin()) &&
@@ -179,7 +192,7 @@ void DrivenBox::begin_setup()
     step.forget("Fix gear/quat: the box was changed since the last run; histories are rebuilt");
   if (!driver) return;
   note_images();
-  follow();
+  follow_change();
   if (!domain->deform_vremap) return;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!ownership.in_body(i)) continue;
@@ -191,11 +204,4 @@ void DrivenBox::begin_setup()
     through(sites.rates_of_faces().data(), passed.data(), flow);
     add3(flow, atom->v[i]);
   }
-}
-
-void DrivenBox::end_run()
-{
-  if (!driver) return;
-  follow();
-  place_sites();
 }

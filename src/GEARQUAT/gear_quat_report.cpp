@@ -35,36 +35,90 @@ using namespace GearQuat;
 ------------------------------------------------------------------------- */
 
 /// Forces are evaluated once per step, so all levels of r-RESPA need the same time step.
-static void refuse_steps(LAMMPS *lmp)
+void Step::refuse_scene() const
 {
-  const double dt = lmp->update->dt;
-  if (dt == 0.0 || !std::isfinite(dt))
-    lmp->error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}", dt);
+  const bool runs = update->whichflag != 2;
+  if (runs && (update->dt == 0.0 || !std::isfinite(update->dt)))
+    error->all(FLERR, "Fix gear/quat requires a time step that is not zero, it is {}", update->dt);
   const std::vector<double> steps = respa_steps(lmp);
-  for (size_t level = 1; level < steps.size(); ++level)
+  for (size_t level = 1; level < steps.size() && runs; ++level)
     if (steps[level] != steps[0])
-      lmp->error->all(FLERR,
-                      "Fix gear/quat requires run_style respa to have the same step at all levels "
-                      "(loop factors of 1); levels 1 and {} have {} and {}",
-                      level + 1, steps[0], steps[level]);
-}
-
-void GearQuat::refuse_scene(LAMMPS *lmp, const Scene &scene, const Fleet &fleet)
-{
-  if (lmp->update->whichflag != 2) refuse_steps(lmp);
-  const Atom *atom = lmp->atom;
-  for (auto *other : lmp->modify->get_fix_list()) {
-    if (other == scene.fix || !other->time_integrate) continue;
+      error->all(FLERR,
+                 "Fix gear/quat requires run_style respa to have the same step at all levels "
+                 "(loop factors of 1); levels 1 and {} have {} and {}",
+                 level + 1, steps[0], steps[level]);
+  for (auto *other : modify->get_fix_list()) {
+    if (other == fix || !other->time_integrate) continue;
     tagint shared = 0;
     for (int i = 0; i < atom->nlocal; ++i)
-      if (scene.ownership.in_body(i) && fleet.moves(other, atom, i)) shared = atom->tag[i];
-    shared = over_ranks(MPI_MAX, shared, lmp->world);
+      if (ownership.in_body(i) && fleet.moves(other, atom, i)) shared = atom->tag[i];
+    shared = over_ranks(MPI_MAX, shared, world);
     if (shared)
-      lmp->error->all(FLERR,
-                      "Fix gear/quat: atom {} is also moved by {}; take it out of the group of one "
-                      "of the two",
-                      shared, name_of(other));
+      error->all(
+          FLERR,
+          "Fix gear/quat: atom {} is also moved by {}; take it out of the group of one of the "
+          "two",
+          shared, name_of(other));
   }
+}
+
+/// Other fixes that change velocities, positions or masses of the atoms of bodies end the run, now or
+/// when the change occurs.
+void Step::refuse_fixes()
+{
+  watched.clear();
+  for (auto *other : modify->get_fix_list()) {
+    const Style *row = known(Fact::ON_ATOMS, other);
+    const bool heats = args.thermostat.damp > 0.0 && other->ecouple_flag && !other->time_integrate;
+    if (other == fix || (!row && !heats)) continue;
+    const tagint shared = shared_atom(lmp, ownership, other);
+    if (heats && shared)
+      error->all(FLERR,
+                 "Fix gear/quat {} is a thermostat of the bodies, and {} is another one; "
+                 "leave out one of the two, or give the other one a group without atoms of bodies",
+                 args.thermostat.keyword(), name_of(other));
+    if (!row) continue;
+    if (row->is(Fact::ANY))
+      error->all(FLERR, "Fix gear/quat cannot be used with {}: bodies do not follow it; {}",
+                 name_of(other), row->instead);
+    if (row->is(Fact::REFLECTION) || (row->is(Fact::EXCHANGE) && !args.mol.empty()))
+      watched.push_back(other);
+    else if (shared && !(row->is(Fact::CONSTRAINED) && other->dof(fix->igroup) == 0) &&
+             !(row->is(Fact::AT_INTEGRATION) &&
+               !(modify->get_fix_mask(other) & FixConst::INITIAL_INTEGRATE)))
+      error->all(FLERR,
+                 "Fix gear/quat: {} changes atoms of bodies, such as atom {}, and bodies do not "
+                 "follow; {}",
+                 name_of(other), shared, row->instead);
+  }
+}
+
+/// Rank 0 warns of forces that the number of values in the command cannot follow.
+void Step::warn_of_noise() const
+{
+  if (args.control.eps > 0.0) return;
+  const NoisyForces found = noise_of_forces(lmp, ownership);
+  const bool first = args.scheme.first() && found.noise == Noise::RANDOM;
+  if (!first && (args.automatic_values || suits_noise(args.scheme, found.noise))) return;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix gear/quat: {}, and {} cannot follow them; leave out keywords {}values and "
+                   "corrector",
+                   found.words(),
+                   first ? "formulation first" : fmt::format("{} values", args.scheme.values()),
+                   first ? "formulation, " : "");
+}
+
+void Step::watch_places() const
+{
+  if (watched.empty()) return;
+  for (const Site &site : sites)
+    if (sites.displacement(site) != 0.0)
+      error->one(FLERR,
+                 "Fix gear/quat: {} has moved atom {} of body {} in step {}, and bodies do not "
+                 "follow; {}",
+                 name_of(watched.front()), atom->tag[site.atom], bodies.body[site.body].id,
+                 update->ntimestep, known(Fact::ON_ATOMS, watched.front())->instead);
 }
 
 /* ----------------------------------------------------------------------
@@ -299,13 +353,13 @@ std::string Report::exclude_own() const
 
 }    // namespace
 
-void GearQuat::report_scene(LAMMPS *lmp, const Scene &scene, const Fleet &fleet)
+void Step::report() const
 {
-  const Report report(scene);
+  const Report report(*this);
   const std::string of_pairs = report.pairs(fleet);
-  if (!scene.args.report) return;
+  if (!args.report) return;
   const std::string text = report.effects() + of_pairs;
-  if (lmp->comm->me == 0) utils::logmesg(lmp, text);
+  if (comm->me == 0) utils::logmesg(lmp, text);
 }
 
 /* ----------------------------------------------------------------------

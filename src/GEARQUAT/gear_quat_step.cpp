@@ -45,8 +45,8 @@ static constexpr double ROUNDING_OF_FORCES = 1.0e-11, ROUNDING_OF_MOTION = 1.0e-
 
 /* ---------------------------------------------------------------------- */
 
-Step::Step(const Scene &scene, const Fleet &fleet, const OtherFixes &others, Tally tally) :
-    Scene(scene), time_step(lmp), bath(scene), fleet(fleet), others(others), present(args.scheme),
+Step::Step(const Scene &scene, const Fleet &fleet, Tally tally) :
+    Scene(scene), time_step(lmp), bath(scene), fleet(fleet), present(args.scheme),
     tally(std::move(tally))
 {
   if (args.control.eps > 0.0) tolerance = std::make_unique<Tolerance>(scene, time_step);
@@ -76,6 +76,8 @@ void Step::meet_bodies()
 
 void Step::init()
 {
+  refuse_fixes();
+  if (!had_run()) warn_of_noise();
   if (tolerance && utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR,
                "Fix gear/quat tolerance cannot be used with run_style respa, whose levels "
@@ -462,7 +464,7 @@ void Step::begin(int vflag, double **f)
 
 void Step::end(double **f, double **torque)
 {
-  others.watch_places();
+  watch_places();
   const bool is_placed = has_to_place();
   for (;;) {
     sites.gather_loads(f, torque);

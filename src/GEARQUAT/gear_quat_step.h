@@ -68,16 +68,6 @@ struct Fleet {
   bool moves(const Fix *fix, const Atom *atom, int i) const;
 };
 
-/// Before a run ends the run on all ranks with a reason: a time step of zero, r-RESPA with different
-/// steps, or atoms that another fix moves too.
-void refuse_scene(LAMMPS *lmp, const Scene &scene, const Fleet &fleet);
-
-/// Writes the report to screen and log on rank 0, if args.report requests it: what is on, what is off
-/// and why, and which pairs of atoms cost time and move nothing.  In any case it warns of a pair
-/// style that acts between atoms of a body.  To be called in setup(), when neighbor lists are built
-/// and bodies have their ghosts.  Collective.
-void report_scene(LAMMPS *lmp, const Scene &scene, const Fleet &fleet);
-
 /// Starts the histories of these fixes together, with steps of h.  Atoms are then as before.
 /// Collective.
 void start_together(LAMMPS *lmp, const std::vector<Step *> &fixes, double h);
@@ -86,7 +76,7 @@ class Step : public Scene {
  public:
   /// tally(vflag, f): adds the virial of the constraint forces, computed from the forces f on atoms.
   using Tally = std::function<void(int, double **)>;
-  Step(const Scene &scene, const Fleet &fleet, const OtherFixes &others, Tally tally);
+  Step(const Scene &scene, const Fleet &fleet, Tally tally);
 
   Phase phase = Phase::DEFINED;
   bool had_run() const { return phase >= Phase::SET_UP; }
@@ -97,8 +87,16 @@ class Step : public Scene {
 
   /// The store has made its bodies; sets their masks.
   void meet_bodies();
-  /// Ends the run if the simulation does not allow a changing time step.
+  /// Ends the run on all ranks with a reason: a time step of zero, r-RESPA with different steps, or
+  /// atoms that another fix moves too.
+  void refuse_scene() const;
+  /// Ends the run if other fixes change atoms of bodies, or do not allow a changing time step.
   void init();
+  /// Writes the report to screen and log on rank 0, if keyword report requests it: what is on, what is
+  /// off and why, and which pairs of atoms cost time and move nothing.  In any case it warns of a pair
+  /// style that acts between atoms of a body.  To be called in setup(), when neighbor lists are built
+  /// and bodies have their ghosts.
+  void report() const;
   /// Discards the histories.  Rank 0 prints the reason if there are any.
   void forget(const std::string &why);
   /// Replaces the masks of a restart file by the masks of the command.
@@ -154,7 +152,6 @@ class Step : public Scene {
  private:
   friend class Start;
   const Fleet &fleet;
-  const OtherFixes &others;
   Scheme present;    ///< without keyword tolerance
   Tally tally;
   std::unique_ptr<Integrator> integrator;
@@ -210,6 +207,11 @@ class Step : public Scene {
 
   MotionLimits limits;    ///< for the current step and box
   void find_limits(double h);
+  /// When forces have been evaluated: ends the run if one of these fixes has moved an atom of a body.
+  void watch_places() const;
+  std::vector<const Fix *> watched;
+  void refuse_fixes();
+  void warn_of_noise() const;
   void watch_load(int ibody, double **f) const;
   void watch(int ibody, double **f) const;
   void watch_all(double **f) const;

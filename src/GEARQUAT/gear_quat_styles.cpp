@@ -5,14 +5,11 @@
 
 #include "gear_quat_styles.h"
 
-#include "gear_quat_arguments.h"
 #include "gear_quat_ranks.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "compute.h"
-#include "domain.h"
-#include "error.h"
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
@@ -186,60 +183,8 @@ bool GearQuat::reads_at_end(LAMMPS *lmp, const Fix *owner)
 }
 
 /* ----------------------------------------------------------------------
-   other fixes that act on atoms of bodies
+   forces on bodies
 ------------------------------------------------------------------------- */
-
-void OtherFixes::init()
-{
-  watched.clear();
-  for (auto *other : modify->get_fix_list()) {
-    const Style *row = known(Fact::ON_ATOMS, other);
-    const bool heats = args.thermostat.damp > 0.0 && other->ecouple_flag && !other->time_integrate;
-    if (other == fix || (!row && !heats)) continue;
-    const tagint atom = shared_atom(lmp, ownership, other);
-    if (heats && atom)
-      error->all(FLERR,
-                 "Fix gear/quat {} is a thermostat of the bodies, and {} is another one; "
-                 "leave out one of the two, or give the other one a group without atoms of bodies",
-                 args.thermostat.keyword(), name_of(other));
-    if (!row) continue;
-    if (row->is(Fact::REFLECTION) || (row->is(Fact::EXCHANGE) && !args.mol.empty()))
-      watched.push_back(other);
-    else
-      refuse(other, *row, atom);
-  }
-}
-
-/// Ends the run if a fix changes atoms of bodies.
-void OtherFixes::refuse(Fix *other, const Style &row, tagint atom) const
-{
-  if (row.is(Fact::ANY))
-    error->all(FLERR, "Fix gear/quat cannot be used with {}: bodies do not follow it; {}",
-               name_of(other), row.instead);
-  if (!atom || (row.is(Fact::CONSTRAINED) && other->dof(fix->igroup) == 0) ||
-      (row.is(Fact::AT_INTEGRATION) &&
-       !(modify->get_fix_mask(other) & FixConst::INITIAL_INTEGRATE)))
-    return;
-  error->all(FLERR,
-             "Fix gear/quat: {} changes atoms of bodies, such as atom {}, and bodies do not "
-             "follow; {}",
-             name_of(other), atom, row.instead);
-}
-
-void OtherFixes::warn_of_noise() const
-{
-  if (args.control.eps > 0.0) return;
-  const NoisyForces found = noise_of_forces(lmp, ownership);
-  const bool first = args.scheme.first() && found.noise == Noise::RANDOM;
-  if (!first && (args.automatic_values || suits_noise(args.scheme, found.noise))) return;
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   "Fix gear/quat: {}, and {} cannot follow them; leave out keywords {}values and "
-                   "corrector",
-                   found.words(),
-                   first ? "formulation first" : fmt::format("{} values", args.scheme.values()),
-                   first ? "formulation, " : "");
-}
 
 NoisyForces GearQuat::noise_of_forces(LAMMPS *lmp, const Ownership &ownership)
 {
@@ -270,16 +215,4 @@ tagint GearQuat::shared_atom(LAMMPS *lmp, const Ownership &ownership, const Fix 
     if (ownership.in_body(i) && (atom->mask[i] & other->groupbit))
       shared = std::max(shared, atom->tag[i]);
   return over_ranks(MPI_MAX, shared, lmp->world);
-}
-
-void OtherFixes::watch_places() const
-{
-  if (watched.empty()) return;
-  for (const Site &site : sites)
-    if (sites.displacement(site) != 0.0)
-      error->one(FLERR,
-                 "Fix gear/quat: {} has moved atom {} of body {} in step {}, and bodies do not "
-                 "follow; {}",
-                 name_of(watched.front()), atom->tag[site.atom], bodies.body[site.body].id,
-                 update->ntimestep, known(Fact::ON_ATOMS, watched.front())->instead);
 }

@@ -4,11 +4,7 @@
 ------------------------------------------------------------------------- */
 
 /* Other styles by their names: a row with all facts of each, their reasons in LAMMPS' sources, and
-   what to use instead.
-
-   Other fixes that change velocities, positions or masses of the atoms of bodies: the run does not
-   begin, or it ends when the change occurs.  The fix calls init() before every run, and
-   watch_places() after the forces, with the predicted positions. */
+   what to use instead. */
 
 #ifndef LMP_GEAR_QUAT_STYLES_H
 #define LMP_GEAR_QUAT_STYLES_H
@@ -100,24 +96,6 @@ struct NoisyForces {
 };
 /// Collective.
 NoisyForces noise_of_forces(LAMMPS *lmp, const Ownership &ownership);
-
-class OtherFixes : protected Scene {
- public:
-  explicit OtherFixes(const Scene &scene) : Scene(scene) {}
-
-  /// Ends the run if a fix of a style that bodies cannot follow acts on their atoms.  Collective.
-  void init();
-  /// Rank 0 warns of forces that the number of values in the command cannot follow.  Collective.
-  void warn_of_noise() const;
-  /// Ends the run if a fix that may move single atoms has moved one of a body; when the forces have
-  /// been evaluated.  Local.
-  void watch_places() const;
-
- private:
-  std::vector<const Fix *> watched;    ///< these may move single atoms
-
-  void refuse(Fix *other, const Style &row, tagint atom) const;
-};
 
 }    // namespace LAMMPS_NS::GearQuat
 
