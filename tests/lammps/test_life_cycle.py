@@ -187,5 +187,5 @@ def test_a_displaced_atom(lmp_wheel, data, ranks):
 def test_a_remapped_box(lmp_wheel, data, first):
     """Each atom is remapped by itself, which ends the next run; fix deform moves bodies as a whole."""
     remapped = water(data, run=f"{first}change_box all x scale 1.1 remap\nrun 5")
-    lmp_wheel.refuse(remapped, "change_box moves each atom by itself")
+    lmp_wheel.refuse(remapped, "change_box moved each atom by itself")
     said(lmp_wheel, data, "fix d all deform 1 x scale 1.1\nrun 5\nunfix d", first=first)
