@@ -274,7 +274,7 @@ struct Upper {
 
 /// A moment of inertia below this fraction of the largest counts as zero: that of CO2 from coordinates
 /// with three decimals in Angstrom is up to 4e-7.
-constexpr double LINEAR_FRACTION = 1.0e-6;
+constexpr double LINEAR_FRACTION = 5.0e-7;
 
 /// Mass and principal moments.  A zero moment has no rotational degree of freedom.
 struct RigidBody {

@@ -125,8 +125,8 @@ TEST(VanishingMoments, AreThoseBelowTheFractionOfTheLargest)
     double given[3], left[3];
   } cases[] = {{{4.0, 1e-9, 4.0}, {4.0, 0.0, 4.0}},                // a rod, but for rounding
                {{4.0, 4.0, -1e-16}, {4.0, 4.0, 0.0}},              // rounding below zero
-               {{1.0, 1.01e-6, 1.0}, {1.0, 1.01e-6, 1.0}},         // 1 % above the limit: a body
-               {{1.0, 0.99e-6, 1.0}, {1.0, 0.0, 1.0}},             // 1 % below: a rod
+               {{1.0, 5.05e-7, 1.0}, {1.0, 5.05e-7, 1.0}},         // 1 % above the limit: a body
+               {{1.0, 4.95e-7, 1.0}, {1.0, 0.0, 1.0}},             // 1 % below: a rod
                {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}},                 // a point
                {{3e-20, 2e-20, 1e-20}, {3e-20, 2e-20, 1e-20}}};    // small, but a body
   for (const auto &c : cases) {
