@@ -19,13 +19,10 @@
 #include "gear_quat_box.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
-#include "force.h"
 #include "modify.h"
-#include "update.h"
 #include "utils.h"
 
 #include <algorithm>

@@ -30,7 +30,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>    // defines __GLIBC__
-#include <utility>
 
 namespace LAMMPS_NS::GearQuat {
 

@@ -26,7 +26,6 @@
 #include "gear_quat_extended.h"
 #include "pointers.h"
 
-#include <array>
 #include <cstddef>
 #include <map>
 

@@ -10,7 +10,6 @@
 
 #include "atom.h"
 #include "domain.h"
-#include "error.h"
 #include "force.h"
 
 #include <algorithm>

@@ -14,7 +14,6 @@
 #include "force.h"
 #include "modify.h"
 #include "output.h"
-#include "pair.h"
 #include "update.h"
 #include "utils.h"
 

@@ -32,7 +32,6 @@
 #include "update.h"
 
 #include <memory>
-#include <string>
 
 namespace LAMMPS_NS::GearQuat {
 

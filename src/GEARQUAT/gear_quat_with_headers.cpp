@@ -20,9 +20,6 @@
 #include "respa.h"
 #include "update.h"
 
-#include <algorithm>
-#include <cmath>
-
 using namespace LAMMPS_NS;
 using namespace GearQuat;
 
