@@ -140,7 +140,7 @@ def test_temperatures_that_differ_are_no_equilibrium(monkeypatch):
     deck = MadeUpLiquid(lambda keywords, dt: 0.0, apart=lambda dt: 1.05 * dt**2, blown=1e9)
     found = answer_of(monkeypatch, deck)
     choice = found.choice.drift
-    assert deck.apart(found.choice.dt) < drift.BALANCE * KELVIN + 5.0 * choice.difference.error < 10.0
+    assert deck.apart(found.choice.dt) < drift.BALANCE * KELVIN + 5.0 * choice.difference.error < 12.0
     wrong = [run for run in found.rows if run.drift.unbalanced]
     assert wrong and all(report.verdict(run) == "temperatures differ" for run in wrong)
 
