@@ -153,7 +153,7 @@ def trial(text, number, method, divide, steps, first, earlier):
             _shortened(part.run, first),
             "thermo_style custom step pe",
             *(f"unfix {id_}" for id_ in [*random, fix.words[1]]),
-            converted(fix) if method == "gear" else fix.text,
+            re.sub(r"\s+langevin(\s+\S+){4}", "", converted(fix) if method == "gear" else fix.text),
             f"timestep $(dt/{divide})",
             f"write_dump all custom begin id {state}",
             "thermo_modify lost error",
