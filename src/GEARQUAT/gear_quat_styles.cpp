@@ -79,7 +79,7 @@ static constexpr Style FIXES[] = {
      "scales velocities, or mixes them with random ones", TEMP},
     {"^heat$ ^ehex ^thermal/conductivity ^viscosity ^oneway ^shardlow ^wall/flow ^smd/setvel",
      CHANGE, "sets, scales, exchanges or reverses velocities", GROUP},
-    {"^set$", CHANGE, "sets positions, velocities, masses or other data", GROUP},
+    {"^set$", CHANGE, "sets positions, velocities or other data", "use command set between runs"},
     {"^atom/swap ^mol/swap ^neighbor/swap ^sgcmc ^charge/regulation", CHANGE,
      "exchanges types, or inserts and removes ions", GROUP},
     {"^sph/stationary ^pimd", CHANGE, "advances densities, or integrates beads", GROUP},

@@ -176,7 +176,6 @@ FIXES = {
     "bond/create": count("5 4 4 0.5 1"),
     "bond/create/angle": count("5 4 4 0.5 1 aconstrain 90 120"),
     "bond/swap": count("10 0.5 1.3 1234", before=("special_bonds lj/coul 0 1 1", *NO_DIHEDRALS)),
-    "set": count("10 0 type 4 charge v_less", before=("variable less atom 0.1+0*x",)),
     # --- changes velocities, places, masses ---
     "atom/swap": moves("5 5 1234 1.0 types 2 3", free=None),
     "mol/swap": moves("5 5 1 2 1234 1.0", free=None),
@@ -191,6 +190,7 @@ FIXES = {
     ),
     "ffl": moves("1.0 1.0 1.0 1234", free=None),
     "heat": moves("<5> 0.1", pieces=5),
+    "set": moves("10 0 type 4 vx v_less", before=("variable less atom 0.1+0*x",), free=None),
     "momentum": moves("<5> linear 1 1 1", pieces=5),
     "momentum/chunk": (Try(MOVES, "<5> cc linear 1 1 1", before=CHUNKS, pieces=5),),
     "oneway": moves("1 whole -x", before=WHOLE),

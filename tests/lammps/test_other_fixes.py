@@ -75,7 +75,7 @@ REFUSED = {
     "viscosity 10 x z 20": "give it a group without atoms of bodies",
     "oneway 1 half +x": "give it a group without atoms of bodies",
     "atom/swap 10 5 4711 300 types 1 2": "give it a group without atoms of bodies",
-    "set 100 0 group all vx v_half": "give it a group without atoms of bodies",
+    "set 100 0 group all vx v_half": "use command set between runs",
     "recenter INIT INIT INIT": "cannot be used with fix other (recenter)",
     "langevin 300 300 100 4711 gjf vhalf": "leave out its keyword gjf",
 }
