@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sysconfig
 from pathlib import Path
@@ -25,7 +26,9 @@ def blocks(page: str, language: str) -> list[str]:
 
 
 def unpack(folder: Path) -> Path:
-    """``folder`` with the files of the commit alone, as in a fresh clone."""
+    """``folder`` with the files of the commit alone, as in a fresh clone; of a release without git, what it came with."""
+    if not (ROOT / ".git").exists():
+        return shutil.copytree(ROOT, folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns(".venv", "build", "__pycache__"))
     archive = subprocess.run(["git", "-C", ROOT, "archive", "HEAD"], capture_output=True, check=True).stdout
     subprocess.run(["tar", "-x", "-C", folder], input=archive, check=True)
     return folder
