@@ -135,8 +135,12 @@ def measurements(found):
 
 def panels(found):
     """Panels of the difference of temperatures and of the density of TIP4P/2005 against the step."""
-    shown, titles = [], ("With fix shake, rotation is colder at long steps", "With fix shake, the density depends on the step")
-    for quantity, title in zip((WARMER, DENSITY), titles):
+    shown = []
+    longest = {series.method: series for series in reversed(at_atmosphere(found, "tip4p"))}  # of each method
+    for quantity, what in ((WARMER, "rotation is colder"), (DENSITY, "the density is higher")):
+        apart, error = difference(*(quantity.of(found[longest[method]]) for method in (SHAKE, OURS)))
+        where = f"At {longest[OURS].dt:g} fs "
+        title = f"{where}{what} with fix shake" if apart > 2 * error else f"{where}the methods agree within their errors"
         curves = []
         for method, color in ((OURS, "momentum"), (SHAKE, "rigid")):
             of_method = sorted((s for s in at_atmosphere(found, "tip4p") if s.method == method), key=lambda s: s.dt)
