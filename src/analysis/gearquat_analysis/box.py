@@ -6,8 +6,8 @@ import numpy as np
 def carried(x, before, after):
     """Positions x (..., 3) after the box changes from ``before`` to ``after`` (4, 3), each an origin and three edges.
 
-    LAMMPS may flip a tilted box to other edges of the same lattice.  The edges used are vectors of the new lattice that
-    are nearest to the edges before.
+    LAMMPS may flip a tilted box to other edges of the same lattice.  Of the new lattice, the
+    vectors that are nearest to the previous edges are used.
     """
     nearest = np.rint(before[1:] @ np.linalg.inv(after[1:]))
     edges = nearest @ after[1:] if np.isclose(abs(np.linalg.det(nearest)), 1.0) else after[1:]
