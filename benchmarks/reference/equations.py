@@ -8,7 +8,8 @@ the principal axes.  All B bodies are integrated as one array of shape (B, 13).
     q' = 1/2 q (omega_body, 0)          (Eq. 5)
     omega_body' = (torque_body - omega_body x I omega_body) / I     (Eq. 12)
 
-Units are lj.
+Units follow the field (LAMMPS' "units"): ``field.force_to_acceleration`` turns force / mass
+into acceleration, ``field.kinetic_to_energy`` turns mass velocity^2 into energy; both are 1 in lj.
 """
 
 from dataclasses import dataclass, fields
@@ -162,7 +163,7 @@ class Problem:
     """An initial value problem: bodies in a field from a start on.
 
     ``name`` is for messages; ``field`` has ``energy_and_forces(positions)`` for site positions
-    (S, 3), and ``astype`` (see fields.py);
+    (S, 3), the two factors of the units and ``astype`` (see fields.py);
     ``start`` is the State at t = 0.
     """
 
@@ -193,7 +194,8 @@ class Problem:
     def forces(self, center, rotation):
         """Potential energy; force in space axes and torque in body axes, (B, 3) each.
 
-        ``center`` (B, 3), ``rotation`` (B, 3, 3) body -> space.
+        ``center`` (B, 3), ``rotation`` (B, 3, 3) body -> space.  Force over mass and torque over moment
+        of inertia are rates of change: the factor of the units is applied.
         """
         arms = self._arms_space(rotation)
         energy, forces = self.field.energy_and_forces(center[self.bodies.body] + arms)
@@ -201,7 +203,8 @@ class Problem:
         force = np.add.reduceat(forces, self._first, axis=0)
         torque_space = np.add.reduceat(qt.cross(arms, forces), self._first, axis=0)
         torque_body = (torque_space[:, :, None] * rotation).sum(axis=1)
-        return energy, force, torque_body
+        factor = center.dtype.type(self.field.force_to_acceleration)
+        return energy, factor * force, factor * torque_body
 
     def rates(self, _time, y):
         """Time derivative of a packed state, shape (B, 13)."""
@@ -217,7 +220,7 @@ class Problem:
     def energies(self, state):
         """Potential, translational and rotational kinetic energy of all bodies, in energy units."""
         potential, _ = self.field.energy_and_forces(self.site_positions(state))
-        half = self.dtype.type(1) / 2
+        half = self.dtype.type(self.field.kinetic_to_energy) / 2
         translation = half * (self.bodies.masses[:, None] * state.velocity**2).sum()
         rotation = half * (self.bodies.moments * state.omega_body**2).sum()
         return potential, translation, rotation

@@ -1,14 +1,24 @@
 """Fields that act on the sites: the cage of the paper, and no field.  Fields of LAMMPS are in lammps_forces.py.
 
 A field has
-    energy_and_forces(positions)  potential energy and forces (S, 3) at site positions (S, 3), in units lj
+    energy_and_forces(positions)  potential energy and forces (S, 3) at site positions (S, 3)
+    force_to_acceleration, kinetic_to_energy   factors of its units (LAMMPS' ftm2v and mvv2e)
+    dtype                         float type its forces are good to, None for any
     astype(dtype)                 itself, for states of another float type
 """
 
 import numpy as np
 
 
-class FreeField:
+class LennardJonesUnits:
+    """Units in which both factors are 1."""
+
+    force_to_acceleration = 1.0
+    kinetic_to_energy = 1.0
+    dtype = None
+
+
+class FreeField(LennardJonesUnits):
     """No forces."""
 
     def energy_and_forces(self, positions):
@@ -20,7 +30,8 @@ class FreeField:
         return self
 
 
-class Cage:
+
+class Cage(LennardJonesUnits):
     """The paper's 26 fixed spheres around one body of four sites; Eq. 19.
 
     The charges are reconstructed, the paper does not print them: of the thirteen pairs of mirror

@@ -21,8 +21,12 @@ import numpy as np
 from .equations import State
 from .fields import FreeField
 
-#: columns K of the extrapolation, order 2K, and the smallest step tolerance that gains something
-COLUMNS, TOLERANCE = 7, 1e-17
+#: columns K of the extrapolation, order 2K; its weights enlarge rounding of the rates 56 times ...
+COLUMNS = 7
+#: ... and 12 times: for forces that are double in a state that is extended
+COLUMNS_DOUBLE_FORCES = 5
+#: smallest step tolerances that gain something
+TOLERANCE, TOLERANCE_DOUBLE_FORCES = 1e-17, 1e-14
 #: a step shrinks to at least, grows to at most, this multiple; the rest is a margin
 SHRINK, GROW, MARGIN = 0.2, 4.0, 0.9
 #: a step below this fraction of the first step means that rounding or a jump of the forces prevents the tolerance
@@ -128,18 +132,25 @@ class GraggBulirschStoer:
         return np.array(states)
 
 
-def integrate(problem, times, tolerance=None, columns=COLUMNS):
+def integrate(problem, times, tolerance=None, columns=None):
     """States of a Problem at ``times``, which rise from 0 or fall from it; 0 need not be listed.
 
     Everything is done in the float type of the problem.  ``tolerance`` bounds the error estimate of every step,
-    relative to the largest position, velocity, ... of any body.
+    relative to the largest position, velocity, ... of any body; it and ``columns`` follow from the float type of the
+    field's forces unless given.
     """
     dtype = problem.dtype.type
     times = [dtype(t) for t in times]
     steps = np.diff(np.array([dtype(0), *times]))
     if not times or not ((steps >= 0).all() or (steps <= 0).all()):
         raise ValueError("times are required that rise (or fall) from 0 on")
-    solver = GraggBulirschStoer(problem.rates, problem.scales, tolerance or TOLERANCE, dtype, columns)
+    extended = problem.field.dtype is None
+    if tolerance is None:
+        tolerance = TOLERANCE if extended else TOLERANCE_DOUBLE_FORCES
+    if columns is None:
+        columns = COLUMNS if extended else COLUMNS_DOUBLE_FORCES
+    scales = problem.scales
+    solver = GraggBulirschStoer(problem.rates, scales, tolerance, dtype, columns)
     states = solver.advance(problem.start.packed(), [dtype(0), *times])[1:]
     return [State.of(packed) for packed in states]
 
@@ -147,8 +158,9 @@ def integrate(problem, times, tolerance=None, columns=COLUMNS):
 def reference_states(problem, times, tolerance=None):
     """States at ``times``, rising from 0: list of State in long double (``.double`` rounds them).
 
-    Without forces they are exact (free_top.py).  In a field they are good to about 1e-14
-    of the size of the scene while the motion is not chaotic.  Raises RuntimeError if long double is not extended.
+    Without forces they are exact (free_top.py).  In an extended field they are good to about 1e-14
+    of the size of the scene while the motion is not chaotic; in LAMMPS' field, whose forces are double, rounding
+    limits them: ten times less accurate in the paper's cage.  Raises RuntimeError if long double is not extended.
     """
     if np.finfo(problem.dtype).eps > 1.1e-19:
         raise RuntimeError(f"a NumPy long double of at least 64 bits' precision is required, not {problem.dtype}")

@@ -11,6 +11,7 @@ from benchmarks.reference import (
     multistep,
     reference_state,
 )
+from benchmarks.reference.fields import LennardJonesUnits
 from benchmarks.reference.free_top import exact_state
 from benchmarks.reference.solvers import state_errors
 from benchmarks.reference.splittings import SPLITTINGS, Motion, states
@@ -45,7 +46,7 @@ def oscillator_order(splitting, evaluations=(600, 900)):
     return slopes([np.abs(oscillator(splitting, n) - exact).max() for n in counts], counts)[0]
 
 
-class Springs:
+class Springs(LennardJonesUnits):
     """Every site is tied to a fixed place by a hardening spring: forces and torques."""
 
     PLACES = np.array([[3, 1, 0], [0, -2, 1], [1, 0, 4], [-1, 2, 0]])
