@@ -285,13 +285,14 @@ void FixGearQuat::post_run()
     follow_change();
     place_in_box();
   }
-  const bigint more = loose_atoms() - loose;
-  if (more > 0 && comm->me == 0)
+  const bigint before = loose;
+  loose = loose_atoms();
+  if (loose > before && comm->me == 0)
     error->warning(FLERR,
                    "Fix gear/quat {0}: other fixes have inserted {1} atoms into its group that are "
                    "in no body, so this fix does not move them; a fix that inserts molecules of "
                    "template {2} as bodies needs its keyword rigid {0}",
-                   id, more, args.mol);
+                   id, loose - before, args.mol);
 }
 
 /// Virial of the constraint forces, at the pose at which the forces were evaluated.
@@ -368,7 +369,7 @@ void FixGearQuat::final_integrate_respa(int ilevel, int /*iloop*/)
 /// part in their first run: until then, as for fix rigid, all degrees of freedom of atoms count.
 bigint FixGearQuat::dof(int tgroup)
 {
-  if (update->whichflag != 1 && !step.had_run()) return 0;
+  if (update->whichflag != 1 && !step.had_run() && !step.continues()) return 0;
   const Comparison found = ownership.count_atoms(group->bitmask[tgroup]);
   if (found.divided && !(told_of_groups & group->bitmask[tgroup])) {
     told_of_groups |= group->bitmask[tgroup];

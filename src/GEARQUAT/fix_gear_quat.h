@@ -143,8 +143,8 @@ class FixGearQuat : public Fix {
 
   // outputs
 
-  static constexpr int ELEMENTS = 8,
-                       COLUMNS = 28;    ///< of the vector, before those of Step; of rows
+  static constexpr int ELEMENTS = 8;    ///< of the vector, before those of Step
+  static constexpr int COLUMNS = 28;    ///< of a row
   using Row = std::array<double, COLUMNS>;
   std::vector<Row> mine, all;
   std::vector<double *> rows;       ///< of `mine`
@@ -157,8 +157,8 @@ class FixGearQuat : public Fix {
   bigint loose = 0;          ///< atoms of the group in no body, when a run began
   int told_of_groups = 0;    ///< their bits: a warning about parts of bodies was given
   static constexpr int PROJECTED = -1;
-  int min_vflag =
-      0;    // vflag of the current evaluation in a minimization; or forces were projected
+  /// vflag of the current evaluation in a minimization; or forces were projected
+  int min_vflag = 0;
 
   bool is_minimized() const;
   void refuse_minimizer() const;

@@ -417,8 +417,10 @@ std::vector<tagint> Arguments::custom_ids(const Selection &selection) const
     if (!(std::fabs(value[i]) < MOST)) unusable = atom->tag[i];
   }
   if ((unusable = over_ranks(MPI_MAX, unusable, world)))
-    error->all(FLERR, "Fix gear/quat custom {}: the value of atom {} is not a number below {:g}",
-               custom, unusable, MOST);
+    error->all(
+        FLERR,
+        "Fix gear/quat custom {}: the value of atom {} is not a number between -{:g} and {:g}",
+        custom, unusable, MOST, MOST);
   smallest = over_ranks(MPI_MIN, smallest, world);
   std::vector<tagint> ids(atom->nlocal, 0);
   for (int i = 0; i < atom->nlocal; ++i)

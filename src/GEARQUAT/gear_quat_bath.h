@@ -24,7 +24,7 @@
 
    Functions are collective unless they say otherwise.
 
-Keywords iso, aniso, tri, x, y, z, xy, xz and yz: the box moves so that components of the
+   With keywords iso, aniso, tri, x, y, z, xy, xz and yz the box moves so that components of the
    molecular pressure have their targets, with keyword temp (NPT) or without (NPH); doc/theory.md,
    Eqs. P1 to P9.
 
@@ -210,7 +210,7 @@ class Bath : protected Scene {
   void fields(Fields &v);
 
  private:
-  /// Elements of the fix's vector after the elements of Outputs and Tolerance; with isokinetic:
+  /// Elements of the fix's vector after those of the bodies and of Tolerance; with isokinetic:
   enum { HEAT, ALPHA_TRANSLATION, ALPHA_ROTATION, ELEMENTS_OF_ISOKINETIC };
   /// Otherwise, those from PRESSURE on with a moving box:
   enum {

@@ -3,14 +3,14 @@
    This software is distributed under the GNU General Public License, version 2.
 ------------------------------------------------------------------------- */
 
-/* LAMMPS' box at any time of a start or a step, as the deformation M of a reference box:
+/* Box: LAMMPS' box at any time of a start or a step, as the deformation M of a reference box:
    R = o + M (X - o), where R is a position, X the scaled position in histories, and o a fixed
    point.  If M = 1, positions, velocities and the box are the same to the last bit as without a
    moving box.
 
-   Periodic images of atoms and positions in LAMMPS' box.
+   Functions for the periodic images of atoms, and for positions in LAMMPS' box.
 
-   A periodic cell that moves with the bodies in it (doc/theory.md, Eqs. P1 to P8).
+   CellHistory: a periodic cell that moves with the bodies in it (doc/theory.md, Eqs. P1 to P8).
 
    Let h be the cell of LAMMPS, an upper triangular matrix, and M = h h_ref^-1 its deformation since a
    reference.  Histories hold scaled centers of mass X, with R = o + M (X - o), so that neither the

@@ -175,9 +175,9 @@ void FixGearQuat::note_images()
     bodies.body[ibody].image = sites.image_of({ownership.owner_of(ibody), ibody, {}});
 }
 
-/// A moving box that another command has changed begins again.
-/// LAMMPS would wrap the atoms of bodies with the present motion of the faces, instead of the motion
-/// with which their velocities were placed.
+/// A box of this fix that another command has changed begins again.  In a box with flow, LAMMPS would
+/// wrap the atoms of bodies with the present motion of the faces, instead of the motion with which
+/// their velocities were placed.
 void FixGearQuat::setup_pre_exchange()
 {
   for (int i = 0; atom->vest && i < atom->nlocal; ++i)    // no fix extrapolates the first ones

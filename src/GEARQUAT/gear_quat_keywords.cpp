@@ -236,10 +236,11 @@ const Keyword &GearQuat::find_keyword(LAMMPS *lmp, const std::string &name, cons
   for (const auto &row : keyword_table()) names.emplace_back(row.name);
   const std::string values = before ? fmt::format("; {} takes {}", before->name, before->required())
                                     : "";
-  lmp->error->all(FLERR,
-                  "Unknown fix gear/quat keyword: {}{}; the keywords are {}; the page about fix "
-                  "rigid says what replaces its other keywords",
-                  name, values, utils::join_words(names, ", "));
+  lmp->error->all(
+      FLERR,
+      "Unknown fix gear/quat keyword: {}{}; the keywords are {}; for keywords of fix rigid "
+      "that are not among them see doc/howto/from_rigid.md",
+      name, values, utils::join_words(names, ", "));
 }
 
 /// A text in brackets, with the formulation if there are two ranges.

@@ -30,6 +30,7 @@ static constexpr int KE_TRANSLATION = 0, KE_ROTATION = 1, NORM = 2, RADIAL = 3, 
 static constexpr int CENTER = 0, VELOCITY = 3, FORCE = 6, TORQUE = 9, IMAGE = 12, QUATERNION = 15,
                      OMEGA_BODY = 19, ANGULAR_MOMENTUM = 22, POSITION_ERROR = 25, ANGLE_ERROR = 26,
                      ID = 27;
+
 // |q|^2 as a sum of four squares has this rounding error; a smaller deviation is reported as zero
 
 static constexpr double NORM_ROUNDING = 1.0e-15;

@@ -142,10 +142,12 @@ void Ownership::recreate()
     error->all(
         FLERR,
         "Fix gear/quat: body {} has another shape than before: some of its atoms were displaced, "
-        "their image flags did not change together (set image, read_dump or rerun with ix iy iz), "
-        "or change_box moved each atom by itself, while fix deform moves bodies as a whole; to "
-        "keep this shape, define the fix after the change",
-        changed);
+        "{}; to keep this shape, define the fix after the change",
+        changed,
+        same_box
+            ? "or their image flags did not change together (set image, read_dump or rerun with "
+              "ix iy iz)"
+            : "or change_box moved each atom by itself, while fix deform moves bodies as a whole");
 }
 
 bool Ownership::resume(const std::vector<const double *> &packed, bool with_extended, int group)

@@ -112,12 +112,14 @@ void Step::warn_of_noise() const
 void Step::watch_places() const
 {
   if (watched.empty()) return;
+  std::vector<std::string> names;
+  for (const auto *one : watched) names.push_back(name_of(one));
   for (const Site &site : sites)
     if (sites.displacement(site) != 0.0)
       error->one(FLERR,
                  "Fix gear/quat: {} has moved atom {} of body {} in step {}, and bodies do not "
                  "follow; {}",
-                 name_of(watched.front()), atom->tag[site.atom], bodies.body[site.body].id,
+                 utils::join_words(names, " or "), atom->tag[site.atom], bodies.body[site.body].id,
                  update->ntimestep, known(Fact::ON_ATOMS, watched.front())->instead);
 }
 

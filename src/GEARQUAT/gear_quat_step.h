@@ -80,6 +80,7 @@ class Step : public Scene {
 
   Phase phase = Phase::DEFINED;
   bool had_run() const { return phase >= Phase::SET_UP; }
+  bool continues() const { return started; }    ///< histories exist, also those of a restart file
   /// True once bodies have histories of the present length.
   bool started = false;
 
@@ -118,9 +119,9 @@ class Step : public Scene {
   /// Chooses the next step; with keyword tolerance only.
   void choose_next();
 
-  // elements of the fix's vector after the elements of Outputs
+  // elements of the fix's vector after those of the bodies
 
-  int elements() const { return of_tolerance() + (bath.elements()); }
+  int elements() const { return of_tolerance() + bath.elements(); }
   double element(int n);
   /// 1 if an element is proportional to the number of bodies.
   int extensive(int n) const { return bath.extensive(n - of_tolerance()); }
@@ -135,8 +136,7 @@ class Step : public Scene {
   /// are adopted, if histories can continue with them.
   void adopt_scheme(Fields &file);
   /// The histories of the file have arrived.  If they do not fit this command, histories start
-  /// again, and rank 0 prints a message.
-  /// False if the file is damaged.
+  /// again, and rank 0 prints a message.  False if the file is damaged.
   bool read(Fields &file);
 
   const Scheme &scheme() const { return tolerance ? tolerance->scheme() : present; }

@@ -298,9 +298,12 @@ std::string Temperature::description() const
 
 void Temperature::tell_freedoms(const char *of)
 {
-  const std::string message =
-      fmt::format("{} of {:.0f} degrees of freedom of translation{} and {:.0f} of rotation", of,
-                  freedoms[TRANSLATION], description(), freedoms[ROTATION]);
+  std::string message = fmt::format("{} of {:.0f} degrees of freedom of translation{}", of,
+                                    freedoms[TRANSLATION], description());
+  if (words.damp > 0.0)
+    message += fmt::format(" and {:.0f} of rotation", freedoms[ROTATION]);
+  else if (message.back() == ',')
+    message.pop_back();
   if (message != told && comm->me == 0)
     utils::logmesg(lmp, "Fix gear/quat {}: {}\n", fix->id, message);
   told = message;

@@ -75,7 +75,7 @@ class TimeStep : protected Pointers {
 
 class Tolerance : protected Scene {
  public:
-  /// Elements of the fix's vector, after the elements of Outputs, as listed in the manual.
+  /// Elements of the fix's vector, after those of the bodies, as listed in the manual.
   static constexpr int ELEMENTS = 9;
 
   /// Sums for the outputs.

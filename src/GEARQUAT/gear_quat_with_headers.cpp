@@ -15,10 +15,12 @@
 #include "atom_vec_ellipsoid.h"
 #include "atom_vec_line.h"
 #include "atom_vec_tri.h"
+#include "comm.h"
 #include "lammps.h"
 #include "molecule.h"
 #include "respa.h"
 #include "update.h"
+#include "utils.h"
 
 using namespace LAMMPS_NS;
 using namespace GearQuat;
@@ -43,20 +45,67 @@ void Forces::clear()
    mass, center and inertia in a molecule template
 ------------------------------------------------------------------------- */
 
+static constexpr double SAME = 1.0e-6;    // numbers of a file have few digits
+
+/// The current properties of the molecule: given properties, and sums over its atoms for the rest.
+static StatedMolecule present(Molecule *molecule)
+{
+  molecule->compute_center();
+  molecule->compute_mass();
+  molecule->compute_com();
+  molecule->compute_inertia();
+  const double *t = molecule->itensor;    // xx yy zz yz xz xy
+  StatedMolecule now = {
+      molecule->masstotal, {}, {t[0], t[5], t[4], t[5], t[1], t[3], t[4], t[3], t[2]}};
+  for (int k = 0; k < 3; ++k) now.center[k] = molecule->com[k] - molecule->center[k];
+  return now;
+}
+
+static bool differ(const StatedMolecule &a, const StatedMolecule &b, double size)
+{
+  double largest = 0.0;
+  for (const double moment : b.inertia) largest = std::max(largest, std::fabs(moment));
+  bool any = std::fabs(a.mass - b.mass) > SAME * b.mass;
+  for (int k = 0; k < 3; ++k) any = any || std::fabs(a.center[k] - b.center[k]) > SAME * size;
+  for (int k = 0; k < 9; ++k) any = any || std::fabs(a.inertia[k] - b.inertia[k]) > SAME * largest;
+  return any;
+}
+
+/// The sums over the atoms; the molecule keeps its given properties.
+static StatedMolecule summed(Molecule *molecule)
+{
+  const double mass = molecule->masstotal;
+  double com[3], tensor[6];
+  std::copy_n(molecule->com, 3, com);
+  std::copy_n(molecule->itensor, 6, tensor);
+  molecule->massflag = molecule->comflag = molecule->inertiaflag = 0;
+  const StatedMolecule sums = present(molecule);
+  molecule->masstotal = mass;
+  std::copy_n(com, 3, molecule->com);
+  std::copy_n(tensor, 6, molecule->itensor);
+  present(molecule);    // compute dependent quantities
+  return sums;
+}
+
+/// Fixes such as gcmc compute these properties and mark them as given, so only others count.
 std::map<int, StatedMolecule> GearQuat::read_stated(LAMMPS *lmp, const std::string &template_id)
 {
   std::map<int, StatedMolecule> all;
   Molecule **molecules = find_template(lmp, template_id);
   for (int n = 0; molecules && n < molecules[0]->nset; ++n) {
     Molecule *one = molecules[n];
-    if (!one->massflag && !one->comflag && !one->inertiaflag) continue;
-    one->compute_center();    // and from the atoms what is not given
-    one->compute_mass();
-    one->compute_com();
-    one->compute_inertia();
-    const double *t = one->itensor;    // xx yy zz yz xz xy
-    all[n] = {one->masstotal, {}, {t[0], t[5], t[4], t[5], t[1], t[3], t[4], t[3], t[2]}};
-    for (int k = 0; k < 3; ++k) all[n].center[k] = one->com[k] - one->center[k];
+    const bool states = one->massflag || one->comflag || one->inertiaflag;
+    const StatedMolecule stated = present(one);
+    if (!states) continue;
+    const StatedMolecule sums = summed(one);
+    if (!differ(stated, sums, std::max(one->maxextent, one->molradius))) continue;
+    all[n] = stated;
+    if (lmp->comm->me == 0)
+      utils::logmesg(
+          lmp,
+          "Fix gear/quat: molecule template {} gives a mass, center of mass or inertia "
+          "that differ from its atoms; bodies use the given values (mass {:g}, atoms {:g})\n",
+          template_id, stated.mass, sums.mass);
   }
   return all;
 }

@@ -6,7 +6,8 @@ from gearquat_analysis.pictures import named, picture
 from gearquat_analysis.units import UNITS
 
 from .trials import NORMS
-from .trials.methods import named as named_method, stated
+from .trials.methods import named as named_method
+from .trials.methods import stated
 
 STAR = {"color": "black", "markersize": 9, "zorder": 4, "label": "recommended"}
 

@@ -4,7 +4,7 @@ import copy
 import re
 from dataclasses import replace
 
-from . import beside, decks, scene, styles, thermostat
+from . import beside, decks, scene, styles, suffixes, thermostat
 
 #: style -> its arguments, wrong by 1 %
 WRONG = {
@@ -14,6 +14,8 @@ WRONG = {
     "rhok": "1 1 1 0.505 0.1",
     "aveforce": "NULL 0.101 NULL",
 }
+#: the epsilon of the molecules, and an epsilon that is wrong by 1 %
+EPSILON, WRONG_EPSILON = "* * 0.3 ", "* * 0.303 "
 
 
 def all_errors(engine, folder):
@@ -21,6 +23,7 @@ def all_errors(engine, folder):
     scene.write_files(folder)
     yield from wrong_forces(engine, folder)
     yield from wrong_thermostats(engine, folder)
+    yield from wrong_variant(engine, folder)
 
 
 def missing_reasons(text):
@@ -75,3 +78,12 @@ def wrong_thermostats(engine, folder):
     yield "the thermostat has three degrees of freedom too many", seen(three_more)
     yield "the heat is wrong by 1 %", seen(heat)
     yield "a velocity is wrong by 1 %, so that the total momentum is not zero", seen(momentum)
+
+
+def wrong_variant(engine, folder):
+    """A variant of a pair style that is wrong by 1 %."""
+    right = suffixes.script("lj/cut", False)
+    wrong = [line.replace(EPSILON, WRONG_EPSILON) for line in right]
+    answers = engine.answers({"right": right, "wrong": wrong}, folder)
+    outcome = suffixes.judge(("lj/cut", False), "opt", 1, answers["wrong"], *2 * [answers["right"]])
+    yield "a variant of a pair style is wrong by 1 %", bool(outcome.faults)

@@ -1,5 +1,6 @@
 """Other fixes that change velocities, positions or masses of the atoms of bodies: one table."""
 
+import math
 import re
 
 import pytest
@@ -149,3 +150,15 @@ def test_values_that_random_forces_heat(lmp_wheel, words):
     assert re.search(line, told)[1] == "t (langevin)"
     assert re.search(line, (ROOT / "doc/howto/read_log.md").read_text())
     assert "cannot follow" not in lmp_wheel.succeed(two_molecules(after=after)).words
+
+
+@pytest.mark.parametrize(
+    "part, words, error",
+    [(0.001, "", 0.005), (0.05, "", 0.005), (0.2, "corrector gear values 4", 0.02)],
+)
+def test_velocities_fade_as_the_friction_says(lmp_wheel, part, words, error):
+    """From weak friction to one that removes a fifth of a momentum in a step."""
+    after = f"fix drag all viscous {part / 0.01}\nthermo 10\nthermo_style custom step temp\nrun 10"
+    after += "\nthermo_modify format float %.17g"
+    ours = lmp_wheel.succeed(two_molecules(f"molecule {words}", after=after)).thermo[-1]["Temp"]
+    assert ours[-1] / ours[0] == pytest.approx(math.exp(-20 * part), rel=error)

@@ -215,6 +215,17 @@ def test_a_middle_that_rounding_moves_is_at_the_center(lmp_tree, off, sites, ran
     assert rows["torques of forces"] == f"on {sites} sites are off the center of mass"
 
 
+def test_carbon_dioxide_with_three_decimals_is_linear(lmp_tree):
+    """As data files have it; with two decimals, molecules are bent."""
+    data = carbon_dioxide(lmp_tree.folder / "data.co2")
+    head, atoms = data.read_text().split("Atoms", 1)
+    for decimals, linear in ((3, True), (2, False)):
+        rounded = re.sub(r"-?\d+\.\d{4,}(?:e-?\d+)?", lambda found: f"{float(found[0]):.{decimals}f}", atoms)
+        (lmp_tree.folder / "data.rounded").write_text(f"{head}Atoms{rounded}")
+        deck = water(lmp_tree.folder / "data.rounded", run="run 0", pair=LENNARD_JONES)
+        assert ("tops" not in effects(report(lmp_tree, deck))["rotation"]) == linear
+
+
 def test_atoms_at_the_same_place_are_a_point(lmp_tree):
     """For any masses; rounding of an arm does not become a moment of inertia."""
     atoms = "\n".join(["create_atoms 1 single 0.1 0.3 0.7"] * 2 + ["create_atoms 2 single 0.1 0.3 0.7"])
@@ -235,10 +246,18 @@ def dioxide(lmp, before="", fix="gear/quat molecule", pair=LENNARD_JONES, run="r
     return deck.replace("check yes exclude molecule/intra all", f"check yes {exclude}")
 
 
+def test_friction_within_bodies_is_no_constant(lmp_wheel):
+    words = dict(style="sphere", masses="fix id all property/atom mol ghost yes\nset group all diameter 1.2 mass 1.0")
+    words |= dict(before="comm_modify vel yes\npair_style gran/hooke 100.0 NULL 1.0 NULL 0.5 0\npair_coeff * *", exclude="", energies="pe", steps=1)
+    atoms = "create_atoms 1 single 0 0 0\ncreate_atoms 1 single 1 0 0"
+    said = lmp_wheel.succeed(empty_box(atoms, **words, fix="gear/quat single")).words
+    assert ACTS.findall(said) == ["gran/hooke"] and "their friction may brake the rotation of bodies" in said
+
+
 @pytest.mark.parametrize("words, ranks", [("molecule", 2), ("molecule report no", 1)])
 def test_pairs_within_bodies_that_interact_are_named_and_mended(lmp_tree, words, ranks):
     first = lmp_tree.succeed(dioxide(lmp_tree, fix=f"gear/quat {words}"), ranks=ranks)
-    assert ACTS.findall(first.output) == ["lj/cut"]
+    assert ACTS.findall(first.output) == ["lj/cut"] and "do not move bodies" in first.words
     ((line),) = REMEDY.findall(first.output)
     assert line == "neigh_modify exclude molecule/intra all"
     ends = [last_frame(lmp_tree.folder / "poses.dump")]

@@ -131,6 +131,16 @@ def test_numbers_that_are_refused(lmp_tree, words, number, message):
     lmp_tree.refuse(deck.replace("f_move[10] f_move[11]", ""), message, ranks=2)
 
 
+def test_the_order_of_definition_does_not_matter(lmp_tree):
+    field = "fix it all addforce 0 0 0.01"
+    decks = [dumbbells(lmp_tree, after, WORDS, before, run="run 0") for after, before in ((field, ""), ("", field))]
+    result = lmp_tree.succeed(one_after_the_other(decks))
+    assert said(result.log) == 2 * [(24, "", 16)]
+    one, other = result.thermo
+    assert one["f_move[10]"] == pytest.approx(other["f_move[10]"], rel=1e-13)
+    assert one["f_move[10]"][0] == pytest.approx(relative(one, "")[0] / 24, rel=1e-12)
+
+
 def test_atoms_outside_and_another_fix(lmp_tree):
     """Bodies of another fix are atoms outside, too; atoms that another fix inserts count from then on."""
     atom = "create_atoms 1 single 0.2 0.2 1.7\ngroup bodies molecule > 0\ngroup free subtract all bodies"

@@ -193,15 +193,11 @@ def test_difference_of_temperatures_and_its_error():
         found = drift.of_trial(deck.run("", [10] * 400, 2.0, timeout=99.0), 1e6, FREEDOMS, BOLTZMANN)
         z.append((found.difference.value - 3.0) / found.difference.error)
     assert np.sqrt(np.mean(np.square(z))) == pytest.approx(1.0, abs=0.15) and abs(np.mean(z)) < 0.25
-    exact = drift.of_trial(
-        types.SimpleNamespace(
-            time=np.arange(1.0, 101.0),
-            energies=np.tile([0.0, 1.0, 0.5 * FREEDOMS[0] * BOLTZMANN * 301.5, 0.5 * FREEDOMS[1] * BOLTZMANN * 298.5], (100, 1)),
-        ),
-        1e6,
-        FREEDOMS,
-        BOLTZMANN,
-    )
+    # the run begins with other temperatures, whose mean is the same
+    kelvin = np.repeat([[330.0, 270.0], [301.5, 298.5]], 50, axis=0)
+    energies = np.column_stack([np.zeros(100), np.ones(100), 0.5 * np.array(FREEDOMS) * BOLTZMANN * kelvin])
+    trial = types.SimpleNamespace(time=np.arange(1.0, 101.0), energies=energies)
+    exact = drift.of_trial(trial, 1e6, FREEDOMS, BOLTZMANN)
     assert exact.difference.value == pytest.approx(3.0)
     assert exact.temperature == pytest.approx(300.0)
     assert Drift(0.0, 0.01, difference=Estimate(4.0, 0.4), temperature=300.0).unbalanced

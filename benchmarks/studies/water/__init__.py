@@ -31,7 +31,7 @@ def of_series(samples):
 
 def at_atmosphere(found, model=None):
     """The series at 1 atm that have samples, of one model or all; by model and method, the longest step first."""
-    chosen = [one for one in found if one.usual and found[one] and model in (None, one.model)]
+    chosen = [one for one in found if one.at_constant_pressure and found[one] and model in (None, one.model)]
     return sorted(chosen, key=lambda one: (list(MODELS).index(one.model), list(METHODS).index(one.method), -one.dt))
 
 
@@ -127,7 +127,7 @@ def measurements(found):
         value, error = WARMER.of(found[series])
         most = widest(error, found[series])
         bounds = {"least": -most, "most": most} if series.method == OURS else {}
-        where = "" if series.usual else ", at constant volume"
+        where = "" if series.at_constant_pressure else ", at constant volume"
         words = f"T translation − T rotation, {MODELS[series.model].title}, {series.text}{where}"
         rows.append(Measurement(words, value, error, ".2f", "K", **bounds))
     return rows
@@ -137,10 +137,11 @@ def panels(found):
     """Panels of the difference of temperatures and of the density of TIP4P/2005 against the step."""
     shown = []
     longest = {series.method: series for series in reversed(at_atmosphere(found, "tip4p"))}  # of each method
-    for quantity, what in ((WARMER, "rotation is colder"), (DENSITY, "the density is higher")):
+    signed = (WARMER, "rotation is hotter", "rotation is colder"), (DENSITY, "the density is lower", "the density is higher")
+    for quantity, *signs in signed:
         apart, error = difference(*(quantity.of(found[longest[method]]) for method in (SHAKE, OURS)))
-        where = f"At {longest[OURS].dt:g} fs "
-        title = f"{where}{what} with fix shake" if apart > 2 * error else f"{where}the methods agree within their errors"
+        seen = f"{signs[apart > 0]} with fix shake" if abs(apart) > 2 * error else "the methods agree within their errors"
+        title = f"At {longest[OURS].dt:g} fs {seen}"
         curves = []
         for method, color in ((OURS, "momentum"), (SHAKE, "rigid")):
             of_method = sorted((s for s in at_atmosphere(found, "tip4p") if s.method == method), key=lambda s: s.dt)
@@ -156,7 +157,7 @@ def find(results):
     """Finding of Results."""
     samples, found = results.samples, of_series(results.samples)
     context = {"samples": len(samples), "ps": samples[0].ps, "runs": len({(s.series, s.start) for s in samples})}
-    context |= {"temperature": TEMPERATURE, "molecules": MODELS["tip4p"].molecules, "ns": length(samples)}
+    context |= {"temperature": TEMPERATURE, "molecules": MODELS["tip4p"].molecules}
     tables = {"water": table(found, AVERAGES), "fluctuations": table(found, FLUCTUATIONS, lengths=False)}
     tables |= {"volume": volume_table(found), "costs": cost_table(found, results.seconds)}
     pictures = {"water": panels(found)}

@@ -34,7 +34,7 @@ class Series:
         return f"{self.model}_{self.method}_{self.dt:g}fs_{self.ensemble}"
 
     @property
-    def usual(self):
+    def at_constant_pressure(self):
         """True at constant pressure."""
         return self.ensemble == NPT
 

@@ -116,4 +116,3 @@ def extrapolated(fine, coarse, quantity):
 def difference(one, other):
     """(value, error) of the difference of two (value, error)."""
     return one[0] - other[0], math.hypot(one[1], other[1])
-

@@ -87,9 +87,10 @@ def _telling_warnings():
 def analyze(dump, out, frames, as_csv, **options):
     """Analyze rigid bodies in a LAMMPS dump.
 
-    DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities.  The command writes poses.npy (poses and energies, by frame and body),
-    bodies.csv, totals.csv, correlations.csv, and averages.csv: temperatures, diffusion and rotational
-    correlation times with standard errors, which it also prints.  It draws pictures of the last three files.
+    DUMP is a 'dump custom' with id, mol, mass, positions (xu yu zu) and velocities.  The command writes poses.npy (poses
+    and energies, by frame and body), bodies.csv, totals.csv, correlations.csv, and averages.csv: temperatures, diffusion
+    and rotational correlation times with standard errors, which it also prints.  It draws pictures of the last three
+    files.
     """
     from . import pictures, report
     from .folder import Folder
@@ -113,7 +114,7 @@ def _bar(what, unit):
     return lambda iterable, total=None: tqdm(iterable, total=total, desc=what, unit=unit, disable=None)
 
 
-def _settle(trajectory, timestep):
+def _tell_times(trajectory, timestep):
     """Report an unused --timestep and missing times."""
     if trajectory.timed and timestep is not None:
         cloup.echo("The dump has times of its own; --timestep is not used.")
@@ -142,7 +143,7 @@ def _run(dump, out, frames, options):
 
     names = ("data", "atom_style", "body", "potential")
     universe = open_dump(dump, timestep=options["timestep"], **{name: options[name] for name in names})
-    _settle(universe.trajectory, options["timestep"])
+    _tell_times(universe.trajectory, options["timestep"])
     try:
         atoms = universe.select_atoms(options["select"])
     except SelectionError as error:
