@@ -273,16 +273,22 @@ FALL = "0.5 -0.3 0.7"  # a constant field
 
 def test_a_template_that_states_its_mass(lmp_tree):
     """Center and inertia are rotated at insertion, too; the motion agrees with rigid/small at a step ten times
-    smaller."""
-    def move(header, fix=MOL, dt=0.005, steps=200):
-        deck = in_field(lmp_tree, dt, steps + 1, force=FALL, header=header, fix=fix)
-        lmp_tree.succeed(deck)
-        return poses(lmp_tree)[:, 1:]
+    smaller.  Properties that another fix has computed, as fix gcmc does, are not stated."""
+    said = "template spce gives a mass, center of mass or inertia that differ from its atoms"
 
-    mine, of_atoms = move(ALL), move("")
-    rigid = move(ALL, "rigid/nve/small molecule mol spce", 0.0005, 2000)
+    def move(header, fix=MOL, dt=0.005, steps=200, first=""):
+        deck = in_field(lmp_tree, dt, steps + 1, force=FALL, header=header, fix=fix)
+        result = lmp_tree.succeed(deck.replace("fix move all", f"{first}fix move all", 1))
+        return poses(lmp_tree)[:, 1:], said in result.words
+
+    mine, told = move(ALL)
+    rigid, _ = move(ALL, "rigid/nve/small molecule mol spce", 0.0005, 2000)
+    of_atoms, told_of_atoms = move("")
+    computed, told_of_computed = move("", first="fix other all rigid/small molecule mol spce\nunfix other\n")
+    assert told and not told_of_atoms and not told_of_computed
     assert mine == pytest.approx(rigid, abs=2e-3)
     assert abs(mine - of_atoms).max() > 0.05  # with the sums over atoms the motion differs
+    assert (computed == of_atoms).all()
 
 
 def test_a_plugin_without_the_header_says_so(lmp_wheel):
