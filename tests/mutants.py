@@ -16,7 +16,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from support.running import ROOT, TREE_BUILD
+from support.running import OPEN_MPI_ENVIRONMENT, ROOT, TREE_BUILD
 
 SOURCES, UNIT = ROOT / "src" / "GEARQUAT", ROOT / "build" / "unit"
 #: a pattern in a line, and its replacement
@@ -77,6 +77,9 @@ def noticed_by(path: Path) -> str:
                 return f"{name}, which did not end"
     if not passes("cmake", "--build", TREE_BUILD, "-j", os.cpu_count())[0]:
         return "-"
+    for reference in (ROOT / "tests" / "lammps").glob("fix-timestep-*.yaml"):  # seconds, and they notice most
+        if not passes(TREE_BUILD / "test_fix_timestep", reference, "--gtest_filter=FixTimestep.plain", env=os.environ | OPEN_MPI_ENVIRONMENT)[0]:
+            return reference.name
     words = ["-m", "tree", "-x", "-q", "-p", "no:cacheprovider", "-n", "2", "--dist", "loadfile"]
     passed, said = passes(sys.executable, "-m", "pytest", *words, "tests/lammps")
     failed = re.search(r"^(?:FAILED|ERROR) (\S+)", said, re.MULTILINE)
