@@ -94,8 +94,9 @@ struct MotionSums {
 enum class Noise { NONE, RANDOM, DISSIPATIVE };
 
 /// False if such forces heat or cool bodies.  With friction alone four of Gear's values follow any
-/// part up to half of a momentum in a step.  With random forces only velocity Verlet gives bodies
-/// the temperature of the forces, as it does for atoms; formulation first has no such method.
+/// part up to a fifth of a momentum in a step.  With random forces only velocity Verlet gives
+/// bodies the temperature of the forces, as it does for atoms; formulation first has no such
+/// method.
 bool suits_noise(const Scheme &scheme, Noise noise);
 
 /// The scheme for a motion, and the reason of its number of values.
