@@ -152,7 +152,7 @@ part_valgrind() {
     check "fields $words" "$ROOT/examples/fields" '^Total wall time' "${leaks[@]}" "$tree/lmp" -in in.fields -log none \
       -var steps 20 -var every 5 -var words "$words"
   done
-  check "case1 by infile" "$ROOT/examples/case1" '^Total wall time' "${leaks[@]}" "$tree/lmp" -in in.case1 -log none \
+  check "case1 by infile" "$ROOT/benchmarks/scenes" '^Total wall time' "${leaks[@]}" "$tree/lmp" -in in.case1 -log none \
     -var body unrotated -var steps 20 -var every 5 -var out none
   check "water on two ranks" "$ROOT/examples/water" '^Total wall time' "${twice[@]}" "${leaks[@]}" "$tree/lmp" \
     -in in.water -log none -var forces plain -var steps 3 -var every 1 -var out none

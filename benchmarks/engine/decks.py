@@ -3,9 +3,9 @@
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-EXAMPLES = ROOT / "examples"
+EXAMPLES, SCENES = ROOT / "examples", ROOT / "benchmarks" / "scenes"
 
 
 def deck(scene):
-    """Input deck of a scene under examples, such as "case1" or "water"."""
-    return EXAMPLES / scene / f"in.{Path(scene).name}"
+    """Input deck of a scene with many variables, such as "case1" or "top"."""
+    return SCENES / f"in.{scene}"

@@ -1,4 +1,4 @@
-"""Time series of one body, as the decks under ``examples`` print them."""
+"""Time series of one body, as the decks of ``benchmarks/scenes`` print them."""
 
 from dataclasses import dataclass, fields
 

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from support.running import SCENES
 from support.scenes import TWO_SITES, frames, two_molecules, water, water_data, whole_deck
 
 # Forces on chosen atoms from step 5 on; before it exp(0) * 0.
@@ -126,12 +127,12 @@ def test_too_large_a_step(lmp_tree, values, dt, ranks):
 
 
 @pytest.mark.parametrize("keywords", ["", "preset paper"])
-def test_coarse_runs_of_today_are_left_alone(lmp_tree, examples, formulation, keywords):
+def test_coarse_runs_of_today_are_left_alone(lmp_tree, formulation, keywords):
     """In these runs the energy is not conserved, but bodies are stable: in some runs |q|^2 is wrong by a factor of
     two."""
     if formulation == "momentum":
         keywords = ""  # the only ones
-    scene = whole_deck(examples / "case1" / "in.case1")
+    scene = whole_deck(SCENES / "in.case1")
     for dt in (0.25, 1.0) if not keywords or formulation == "second" else (0.25,):
         settings = dict(formulation=formulation, keywords=keywords, dt=dt, out="none")
         lmp_tree.succeed(scene, settings | dict(steps=2000, every=1000))

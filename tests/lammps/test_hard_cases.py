@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from support.running import EXAMPLES
+from support.running import EXAMPLES, SCENES
 from support.scenes import FORMULATIONS, frames, last_frame, one_after_the_other, placed, water, write_data
 from support.step_control import off, tables
 
@@ -32,7 +32,7 @@ def rows(molecule, kinds, charges, places):
 
 def test_the_papers_small_step_leaves_rounding_only(lmp_wheel, formulation):
     """Test case 1 at a step of 0.0001; without projection the length of q performs a random walk."""
-    deck, settings = EXAMPLES / "case1" / "in.case1", dict(formulation=formulation, out="none")
+    deck, settings = SCENES / "in.case1", dict(formulation=formulation, out="none")
 
     def run(**more):
         return tables(lmp_wheel.succeed(deck, settings | more))[0]
@@ -99,7 +99,7 @@ def test_a_top_turns_over_as_jacobis_functions_say(lmp_wheel, formulation, value
     def missed(compensate):
         settings = dict(formulation=formulation, keywords=f"values {values} compensate {compensate}", dt=0.01, steps=400_000)
         settings |= dict(every=80_000, dump=80_000, out=lmp_wheel.folder / "top")
-        lmp_wheel.succeed(EXAMPLES / "top" / "in.top", settings)
+        lmp_wheel.succeed(SCENES / "in.top", settings)
         sites = read_sites(lmp_wheel.folder / "top.dump")
         bodies, start = bodies_from_sites(sites.masses, sites.positions[0], sites.velocities[0], np.zeros(6, int))
         top = Problem("top", bodies, FreeField(), start)

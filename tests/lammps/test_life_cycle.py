@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.running import SCENES
 from support.scenes import two_molecules, water, whole_deck
 
 COLUMNS = ["c_centre[1]", "c_centre[2]", "c_centre[3]", "c_potential", "v_ketrans", "v_kerot"]
@@ -10,9 +11,9 @@ COLUMNS = ["c_centre[1]", "c_centre[2]", "c_centre[3]", "c_potential", "v_ketran
 class Case1:
     """The paper's first case with other final commands."""
 
-    def __init__(self, lmp, examples, formulation):
+    def __init__(self, lmp, formulation):
         self.lmp = lmp
-        self.scene = whole_deck(examples / "case1" / "in.case1")
+        self.scene = whole_deck(SCENES / "in.case1")
         self.variables = dict(formulation=formulation, dt=0.02, every=100, out="none")
 
     def run(self, ending, **variables):
@@ -25,8 +26,8 @@ def end(result):
 
 
 @pytest.fixture
-def case1(lmp_tree, examples, formulation):
-    return Case1(lmp_tree, examples, formulation)
+def case1(lmp_tree, formulation):
+    return Case1(lmp_tree, formulation)
 
 
 def test_several_runs_are_one_run(case1):

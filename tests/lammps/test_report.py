@@ -5,6 +5,7 @@ from fnmatch import fnmatchcase
 
 import numpy as np
 import pytest
+from support.running import SCENES
 from support.scenes import empty_box, last_frame, placed, random_rotation, two_molecules, water, whole_deck, write_data
 
 TITLE = re.compile(r"^Fix gear/quat (\S+): (\d+) bodies of (.+) sites, (\d+) degrees of freedom$")
@@ -130,9 +131,9 @@ def test_degrees_of_freedom_of_other_bodies(lmp_tree):
 
 
 # --- surroundings --------------------------------------------------------------------------------
-def cage(examples, exclude="", fix="molecule", body="body"):
+def cage(exclude="", fix="molecule", body="body"):
     """Test case 1 without its exclusions; exclude: lines after the neighbor settings."""
-    deck = whole_deck(examples / "case1" / "in.case1")
+    deck = whole_deck(SCENES / "in.case1")
     wanted = "exclude group cage cage exclude molecule/intra body"
     assert wanted in deck
     deck = deck.replace(wanted, f"\n{exclude}")
@@ -140,12 +141,12 @@ def cage(examples, exclude="", fix="molecule", body="body"):
 
 
 @pytest.mark.parametrize("fix, ranks", [("molecule", 2), ("single", 1)])
-def test_pairs_that_move_nothing_are_found_and_mended(lmp_tree, examples, fix, ranks):
+def test_pairs_that_move_nothing_are_found_and_mended(lmp_tree, fix, ranks):
     run = {"steps": 20, "every": 10}
-    before = lmp_tree.succeed(cage(examples, fix=fix), run, ranks=ranks)
+    before = lmp_tree.succeed(cage(fix=fix), run, ranks=ranks)
     lines = lines_of(before)
     assert counted(lines) == {"among": (26 * 25 // 2, 30 * 29 // 2), "within": (6, 30 * 29 // 2)}
-    after = lmp_tree.succeed(cage(examples, proposals(lines), fix), run, ranks=ranks)
+    after = lmp_tree.succeed(cage(proposals(lines), fix), run, ranks=ranks)
     assert counted(lines_of(after)) == {}
     old, new = before.thermo[-1], after.thermo[-1]
     for column in ("c_centre[1]", "v_ketrans", "v_kerot"):
@@ -154,11 +155,11 @@ def test_pairs_that_move_nothing_are_found_and_mended(lmp_tree, examples, fix, r
     assert np.ptp(shift) < 1e-11 and abs(shift[0]) > 0.1
 
 
-def test_pairs_of_atoms_that_no_fix_moves(lmp_tree, examples):
+def test_pairs_of_atoms_that_no_fix_moves(lmp_tree):
     """Each kind is reported separately; atoms moved by another fix are not counted."""
 
     def kinds(exclude, mover=""):
-        deck = cage(examples, f"neigh_modify exclude {exclude}")
+        deck = cage(f"neigh_modify exclude {exclude}")
         deck = deck.replace("fix move body", f"{mover}\nfix move body")
         return counted(report(lmp_tree, deck, {"steps": 0}))
 
@@ -169,8 +170,8 @@ def test_pairs_of_atoms_that_no_fix_moves(lmp_tree, examples):
     assert some["among"][0] == 16 * 15 // 2
 
 
-def test_a_group_is_proposed_where_there_is_none(lmp_tree, examples):
-    deck = cage(examples).replace("group cage subtract all body", "")
+def test_a_group_is_proposed_where_there_is_none(lmp_tree):
+    deck = cage().replace("group cage subtract all body", "")
     proposed = proposals(report(lmp_tree, deck, {"steps": 0}))
     assert "group still subtract all body\nneigh_modify exclude group still still" in proposed
     mended = deck.replace("fix move", proposed + "\nfix move")

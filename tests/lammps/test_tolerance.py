@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 import pytest
-from support.running import EXAMPLES
+from support.running import SCENES
 from support.scenes import TWO_SITES, UNITS, assigned, one_after_the_other, restarted, two_molecules, water, water_data, whole_deck
 from support.step_control import (
     ELEMENTS,
@@ -31,7 +31,7 @@ COLUMNS = " ".join(ELEMENTS)
 def case1(run="run ${steps}", before="", **settings):
     """A deck; before: commands before fix move."""
     known = dict(dt=0.1, every=1, out="none", more=COLUMNS, steps=1000, tolerance=1e-12) | settings
-    text = whole_deck(EXAMPLES / "case1" / "in.case1").replace("run ${steps}", run)
+    text = whole_deck(SCENES / "in.case1").replace("run ${steps}", run)
     return assigned(known) + text.replace("fix move body", f"{before}\nfix move body")
 
 
@@ -159,7 +159,7 @@ def test_a_near_singular_encounter_keeps_the_energy(lmp_tree, distance, eps):
 
     def run(**settings):
         words = dict(distance=distance, tolerance=tolerance)
-        deck = EXAMPLES / "hard" / "encounter" / "in.encounter"
+        deck = SCENES / "in.encounter"
         words["measure"] = measure
         return tables(lmp_tree.succeed(deck, words | settings))[0]
 
@@ -176,7 +176,7 @@ def test_case_1_for_long(lmp_tree, eps):
     variables = dict(shift="3e-9", until=2500)
     if eps:
         variables["tolerance"] = eps
-    deck = EXAMPLES / "hard" / "long" / "in.long"
+    deck = SCENES / "in.long"
     result = lmp_tree.succeed(deck, variables)
     line = r"^evaluations (\S+), energy off by (\S+) sampled, (\S+) at"
     evaluations, sampled, every_step = map(float, re.findall(line, result.log, re.M)[-1])

@@ -1,4 +1,4 @@
-"""The scenes under examples/: energies as printed in the paper, and decks that run."""
+"""The scenes of the paper and the examples: energies as printed in the paper, and decks that run."""
 
 import re
 
@@ -7,7 +7,7 @@ import pytest
 from support.pages import unpack
 from support.scene_files import read_atoms
 
-from support.running import EXAMPLES
+from support.running import EXAMPLES, SCENES
 
 MOTIONS = ("momentum", "second", "first", "rigid")
 METHODS = ("gear", "rigid")
@@ -65,41 +65,6 @@ def test_energy_of_the_top(run_scene, method):
     assert total[1] == pytest.approx(expected, rel=1e-4)
 
 
-# --- the coated body ----------------------------------------------------------------------------
-EPSILON = {"cage": 10.0, 4: 10.0, "coat": 0.1}  # all with sigma 10: so has every mixed pair
-
-
-def coated_energy(examples, coat):
-    """Total energy of the start of case 1 with epsilon ``coat`` on spheres 1 to 3."""
-    atoms, velocities = read_atoms(examples / "case1" / "data.consistent")
-    body, cage = atoms[:4], atoms[4:]
-    epsilon = np.sqrt(EPSILON["cage"] * np.array([coat, coat, coat, EPSILON[4]]))[:, None]
-    r = np.linalg.norm(body[:, None, 4:7] - cage[:, 4:7], axis=2)
-    sixth = (10.0 / r) ** 6
-    potential = (np.outer(body[:, 3], cage[:, 3]) / r + 4 * epsilon * (sixth**2 - sixth)).sum()
-    return potential + 0.5 * np.array([2.0, 2.0, 10.0, 50.0]) @ (velocities[:4] ** 2).sum(axis=1)
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_energy_of_the_coated_body(run_scene, examples, method):
-    """The energy is below zero, so the body stays in the cage; the sum is independent."""
-    expected = coated_energy(examples, EPSILON["coat"])
-    assert expected == pytest.approx(-0.82575686, abs=5e-9)
-    total = run_scene("coated", method=method, steps=0)["v_total"][0]
-    assert total == pytest.approx(expected, rel=1e-12)
-
-
-def test_coated_body_is_repelled_by_every_sphere(examples):
-    """On the way to any charge of the cage, at most 1, the repulsion wins long before r = 5."""
-    scene = (examples / "common" / "in.scene").read_text()
-    assert "pair_coeff 1*2 1*2 ${coat} ${thickness}" in scene
-    deck = (examples / "coated" / "in.coated").read_text()
-    assert f"variable coat index {EPSILON['coat']:g}\n" in deck
-    epsilon, r = np.sqrt(EPSILON["coat"] * EPSILON["cage"]), np.linspace(2.0, 8.0, 100)
-    force = 24 * epsilon / r * (2 * (10 / r) ** 12 - (10 / r) ** 6) - 1.0 / r**2
-    assert (force > 0).all() and (np.diff(force) < 0).all()
-
-
 # --- all decks ----------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def fresh(tmp_path_factory):
@@ -107,7 +72,7 @@ def fresh(tmp_path_factory):
     return unpack(tmp_path_factory.mktemp("fresh")) / "examples"
 
 
-DECKS = sorted(deck.relative_to(EXAMPLES) for deck in EXAMPLES.rglob("in.*") if deck.parent.name != "common")
+DECKS = sorted(deck.relative_to(EXAMPLES) for deck in EXAMPLES.rglob("in.*"))
 
 
 @pytest.mark.parametrize("deck", DECKS, ids=str)
@@ -115,10 +80,18 @@ def test_decks_run_in_a_fresh_clone(lmp_wheel, fresh, deck):
     lmp_wheel.succeed(fresh / deck, {"steps": 1} if deck.name == "in.equilibrate" else {})
 
 
-# --- variables that all decks share -------------------------------------------------------------
-def test_what_is_set_reaches_the_fix(lmp_wheel, examples):
+@pytest.mark.parametrize("name", ["case1", "case2", "case3", "top"])
+def test_examples_are_the_measured_scenes(lmp_wheel, name):
+    """The same centers of mass and energies."""
+    measured, example = (lmp_wheel.succeed(path).thermo[-1] for path in (SCENES / f"in.{name}", EXAMPLES / name / f"in.{name}"))
+    for ours, scenes in {"c_center[1]": "c_centre[1]", "f_move[2]": "v_kerot"}.items():
+        assert example[ours] == pytest.approx(measured[scenes], abs=1e-12)
+
+
+# --- variables that all scenes share -------------------------------------------------------------
+def test_what_is_set_reaches_the_fix(lmp_wheel):
     """Keywords are given to the fix only if they are set; more adds columns."""
-    deck = examples / "case1" / "in.case1"
+    deck = SCENES / "in.case1"
     named = {"formulation": "second", "keywords": "values 8 passes 2", "tolerance": 0, "more": "f_move[1] pe"}
     for variables, given in ((named, "formulation second values 8 passes 2"), ({"tolerance": 1e-9}, "tolerance 1e-09 length"), ({}, "")):
         log = lmp_wheel.succeed(deck, {"steps": 0, **variables}).log

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.reference import paper_problem, reference_state
+from benchmarks.engine.decks import SCENES
 from benchmarks.reference.lammps_forces import DeckError, LammpsForces, deck_problem
 
 BOX, CUT = np.array([9.0, 10.0, 11.0]), 4.0
@@ -130,9 +131,9 @@ def test_tilted_boxes(write_deck):
         assert not agrees(field, molecules())
 
 
-def test_case_1_in_lammps_is_case_1_in_the_cage(examples):
+def test_case_1_in_lammps_is_case_1_in_the_cage():
     """The scene generator, LAMMPS' pair style and the notes on the paper agree."""
-    cage, scene = paper_problem(1), deck_problem(examples / "case1" / "in.case1")
+    cage, scene = paper_problem(1), deck_problem(SCENES / "in.case1")
     try:
         positions = cage.site_positions(cage.start)
         assert np.abs(scene.site_positions(scene.start) - positions).max() < 2e-14

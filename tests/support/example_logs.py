@@ -23,8 +23,8 @@ COMPARED = {
     **dict.fromkeys(["Volume", "Econserve"], (1e-4, 1e-7)),  # water at constant pressure
 }
 
-#: folders with decks; ``common`` is read by some of them
-FOLDERS = ("case1", "case2", "case3", "coated", "collisions", "fields", "isokinetic", "top", "water")
+#: folders with decks
+FOLDERS = ("case1", "case2", "case3", "collisions", "fields", "isokinetic", "top", "water")
 
 
 def log_of(deck: Path) -> Path:
@@ -46,7 +46,7 @@ def name_of(deck: Path) -> str:
 def copy_examples(to: Path) -> Path:
     """The folders with decks, located like LAMMPS' examples of a package."""
     target = to / "examples" / "PACKAGES" / "gearquat"
-    for name in ("common", *FOLDERS):
+    for name in FOLDERS:
         shutil.copytree(EXAMPLES / name, target / name, ignore=shutil.ignore_patterns("log.lammps", "out.*"))
     return target
 

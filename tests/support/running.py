@@ -41,6 +41,8 @@ UNDEFINED = "runtime error: "
 #: exit status after MPI_Abort by LAMMPS, and the most runs if MPICH loses the message
 ABORTED, MOST_RUNS = 1, 4
 EXAMPLES = ROOT / "examples"
+#: scenes with a variable for every choice
+SCENES = ROOT / "benchmarks" / "scenes"
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from support.running import EXAMPLES
+
 FORMULATIONS = ["momentum", "second", "first"]
 
 # Two rigid triangles in a box without forces: for tests of commands and life cycles.
@@ -397,18 +399,11 @@ def assigned(values: dict) -> str:
     return "".join(f'variable {k} delete\nvariable {k} index "{v}"\n' for k, v in values.items())
 
 
-def whole_deck(path: Path, files=("data", "infile")) -> str:
-    """An example's deck with its includes expanded and absolute names of files."""
-    lines = []
-    for line in path.read_text().splitlines():
-        if line.startswith("include "):
-            lines.append(whole_deck(path.parent / line.split()[1], ()))
-        else:
-            lines.append(line)
-    text = "\n".join(lines)
-    for name in files:
-        text = text.replace(f"index {name}", f"index {path.parent / name}")
-    return text
+def whole_deck(path: Path) -> str:
+    """A scene's deck with its includes expanded and absolute names of files."""
+    lines = path.read_text().splitlines()
+    included = [whole_deck(path.parent / line.split()[1]) if line.startswith("include ") else line for line in lines]
+    return "\n".join(included).replace("../../examples", str(EXAMPLES))
 
 
 # Three triangles and a dumbbell that attract each other and stay together; there is no cutoff.

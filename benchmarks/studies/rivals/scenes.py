@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from benchmarks.engine.decks import EXAMPLES, deck
+from benchmarks.engine.decks import EXAMPLES, SCENES
 from benchmarks.reference import Cage, Problem, State, paper_problem
 from benchmarks.reference import quaternion as qt
 from benchmarks.reference.lammps_forces import deck_problem
@@ -90,7 +90,7 @@ class Scene(accuracy.Scene):
     """A scene of the study of accuracy, whose error may also be that of "sites".
 
     ``steps``: numbers of steps of the fix, ascending; ``tolerances`` of methods that control their steps;
-    ``evaluations``: approximate numbers for splittings; ``path`` of the deck, if it is not one of the examples.
+    ``evaluations``: approximate numbers for splittings; ``path`` of the deck, if it is not one of benchmarks/scenes.
     """
 
     steps: tuple = ()
@@ -132,7 +132,7 @@ def write_data(path, problem):
     spin = (rotation @ state.omega_body[..., None])[..., 0]
     positions = problem.site_positions(state)
     velocities = state.velocity + qt.cross(spin, positions - state.center)
-    lines = (deck("case1").parent / "data.consistent").read_text().splitlines()
+    lines = (EXAMPLES / "case1" / "data.consistent").read_text().splitlines()
     for section, rows in (("Atoms # full", positions), ("Velocities", velocities)):
         first = lines.index(section) + 2
         for k, row in enumerate(rows.astype(np.float64)):
@@ -166,8 +166,8 @@ def _atoms(bodies, kinds, motions):
 
 
 def _deck(folder, name, units, types, forces, *bodies_kinds_motions):
-    """Path of a deck that it writes, with the methods and outputs of examples."""
-    path, motion = folder / f"in.{name}", EXAMPLES / "common" / "in.motion"
+    """Path of a deck that it writes, with the methods and outputs of benchmarks/scenes."""
+    path, motion = folder / f"in.{name}", SCENES / "in.motion"
     atoms = _atoms(*bodies_kinds_motions)
     path.write_text(HEAD.format(title=name, units=units, types=types, atoms=atoms, forces=forces, motion=motion))
     return str(path)
