@@ -83,9 +83,17 @@ def test_decks_run_in_a_fresh_clone(lmp_wheel, fresh, deck):
 @pytest.mark.parametrize("name", ["case1", "case2", "case3", "top"])
 def test_examples_are_the_measured_scenes(lmp_wheel, name):
     """The same centers of mass and energies."""
-    measured, example = (lmp_wheel.succeed(path).thermo[-1] for path in (SCENES / f"in.{name}", EXAMPLES / name / f"in.{name}"))
-    for ours, scenes in {"c_center[1]": "c_centre[1]", "f_move[2]": "v_kerot"}.items():
+    measured, example = (lmp_wheel.succeed(folder / f"in.{name}").thermo[-1] for folder in (SCENES, EXAMPLES / name))
+    for ours, scenes in {"c_center[1]": "c_centre[1]", "f_move[2]": "v_kerot", "v_total": "v_total"}.items():
         assert example[ours] == pytest.approx(measured[scenes], abs=1e-12)
+
+
+@pytest.mark.parametrize("case", [1, 3])
+def test_the_unrotated_body_in_an_example(lmp_wheel, case):
+    """Its energy belongs to the moments of the infile, not to the sites."""
+    words = {"data": "data.unrotated", "words": "infile infile.unrotated preset paper", "steps": 0}
+    result = lmp_wheel.succeed(EXAMPLES / f"case{case}" / f"in.case{case}", words)
+    assert result.thermo[-1]["v_total"][0] == pytest.approx(ENERGY[case], abs=5e-9)
 
 
 # --- variables that all scenes share -------------------------------------------------------------
