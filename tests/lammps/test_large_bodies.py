@@ -39,6 +39,8 @@ def slab_data(path, height=BOX, cells=CELLS, trimers=True, at=(0.3, 0.3, 0.28)):
     rng = np.random.default_rng(20251123)
     box = np.array([BOX, BOX, height])
     slab = (np.array(list(np.ndindex(*cells))) - (np.array(cells) - 1) / 2) * SPACING
+    # one of the sites next to the middle is the nearest, the owner, and not by rounding
+    slab[np.abs(slab).sum(axis=1).argsort(kind="stable")[2]] *= 0.8
     slab = slab @ random_rotation(rng).T + np.array(at) * BOX
     trimer = np.array([[0, 0, 0], [0.9, 0, 0], [0.2, 0.8, 0]])
     trimer -= trimer.mean(axis=0)
