@@ -14,7 +14,7 @@ from lammps_gearquat.launch import open_library
 
 from . import arguments, infile
 
-PATIENCE = 20  # seconds for one input
+PATIENCE = 60  # seconds for one input, also with sanitizers
 FRESH = 250  # inputs for one LAMMPS
 MOST_FAULTS = 20
 
