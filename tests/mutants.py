@@ -54,27 +54,26 @@ def passes(*command: object, **settings: object) -> tuple[bool, str]:
     return done.returncode == 0, done.stdout + done.stderr
 
 
-def unit_tests(header: Path) -> list[str]:
-    """Programs of the kernel's tests; programs that name the header come first."""
-    tests = sorted((ROOT / "tests" / "unit").glob("test_*.cpp"))
-    word = header.name.removeprefix("gear_quat_").removesuffix(".h")
-    return [path.stem for path in sorted(tests, key=lambda path: (word not in path.stem, header.name not in path.read_text()))]
+def unit_tests(source: Path) -> list[str]:
+    """Programs of the kernel's tests; programs that name the source's header come first."""
+    tests, header = sorted((ROOT / "tests" / "unit").glob("test_*.cpp")), source.with_suffix(".h").name
+    word = source.stem.removeprefix("gear_quat_")
+    return [path.stem for path in sorted(tests, key=lambda path: (word not in path.stem, header not in path.read_text()))]
 
 
 def noticed_by(path: Path) -> str:
     """The first test that fails, "" if no test fails; "-" for code that does not compile."""
-    if path.suffix == ".h":
-        for name in unit_tests(path):
-            was = (UNIT / name).stat().st_mtime_ns if (UNIT / name).exists() else 0
-            if not passes("ninja", "-C", UNIT, name)[0]:
-                return "-"
-            if (UNIT / name).stat().st_mtime_ns == was:
-                continue
-            try:
-                if not passes(UNIT / name, "--gtest_fail_fast", timeout=300)[0]:
-                    return name
-            except subprocess.TimeoutExpired:
-                return f"{name}, which did not end"
+    for name in unit_tests(path):
+        was = (UNIT / name).stat().st_mtime_ns if (UNIT / name).exists() else 0
+        if not passes("ninja", "-C", UNIT, name)[0]:
+            return "-"
+        if (UNIT / name).stat().st_mtime_ns == was:
+            continue
+        try:
+            if not passes(UNIT / name, "--gtest_fail_fast", timeout=300)[0]:
+                return name
+        except subprocess.TimeoutExpired:
+            return f"{name}, which did not end"
     if not passes("cmake", "--build", TREE_BUILD, "-j", os.cpu_count())[0]:
         return "-"
     for reference in (ROOT / "tests" / "lammps").glob("fix-timestep-*.yaml"):  # seconds, and they notice most
