@@ -77,7 +77,8 @@ def noticed_by(path: Path) -> str:
     if not passes("cmake", "--build", TREE_BUILD, "-j", os.cpu_count())[0]:
         return "-"
     for reference in (ROOT / "tests" / "lammps").glob("fix-timestep-*.yaml"):  # seconds, and they notice most
-        if not passes(TREE_BUILD / "test_fix_timestep", reference, "--gtest_filter=FixTimestep.plain", env=os.environ | OPEN_MPI_ENVIRONMENT)[0]:
+        harness = TREE_BUILD / "test_fix_timestep", reference, "--gtest_filter=FixTimestep.plain"
+        if not passes(*harness, env=os.environ | OPEN_MPI_ENVIRONMENT)[0]:
             return reference.name
     words = ["-m", "tree", "-x", "-q", "-p", "no:cacheprovider", "-n", "2", "--dist", "loadfile"]
     passed, said = passes(sys.executable, "-m", "pytest", *words, "tests/lammps")
