@@ -32,7 +32,6 @@ static constexpr int CENTER = 0, VELOCITY = 3, FORCE = 6, TORQUE = 9, IMAGE = 12
                      ID = 27;
 
 // |q|^2 as a sum of four squares has this rounding error; a smaller deviation is reported as zero
-
 static constexpr double NORM_ROUNDING = 1.0e-15;
 
 /* ----------------------------------------------------------------------

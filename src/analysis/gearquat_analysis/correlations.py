@@ -1,9 +1,9 @@
 """Mean squares and autocorrelations of poses and motion, averaged over bodies and origins of time.
 
 All functions take arrays (F, B, ...) from ``Poses``, in memory or in a file, and process a few bodies at a time, so
-memory does not grow with the number of bodies, unless the box changes, which needs copies of all centers.  They return (F,): entry k belongs to a lag of k frames, see ``lags``;
-the last entries are means over few origins of time.  Sums over origins are computed by Fourier transforms (V.
-Calandrini et al., Collection SFN 12, 201 (2011), Sec. 4.2).
+memory does not grow with the number of bodies, unless the box changes, which needs copies of all centers.  They return
+(F,): entry k belongs to a lag of k frames, see ``lags``; the last entries are means over few origins of time.  Sums over
+origins are computed by Fourier transforms (V. Calandrini et al., Collection SFN 12, 201 (2011), Sec. 4.2).
 """
 
 from dataclasses import dataclass
